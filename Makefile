@@ -1,0 +1,36 @@
+# deamat: `make all` reprocesses raw/ into processed/, `make test` runs the tests, `make help` lists the rest.
+VENV := .venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/pip --disable-pip-version-check --quiet
+PYTHON ?= python3.11
+
+.DEFAULT_GOAL := help
+.PHONY: all test check bench help clean
+
+all: $(VENV)/.runtime  ## reprocess raw/ into processed/: read, fit, refuse, publish cards
+	@$(BIN)/deamat all
+
+test: $(VENV)/.dev  ## run the whole test suite
+	@$(BIN)/python -m pytest
+
+check: $(VENV)/.dev  ## style, types and import contracts
+	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy && $(BIN)/lint-imports
+
+bench: $(VENV)/.dev  ## measure speed against rivals (ratios in one run)
+	@$(BIN)/python -m benchmarks.read_and_fit
+
+clean:  ## forget everything that can be made again
+	rm -rf $(VENV) && find processed -mindepth 1 ! -name README.md -delete
+
+$(VENV)/.runtime: pyproject.toml constraints.txt
+	@test -d $(VENV) || $(PYTHON) -m venv $(VENV)
+	@$(PIP) install -c constraints.txt setuptools
+	@$(PIP) install -c constraints.txt --no-build-isolation --config-settings editable_mode=compat -e .
+	@touch $@
+
+$(VENV)/.dev: $(VENV)/.runtime
+	@$(PIP) install -c constraints.txt --no-build-isolation --config-settings editable_mode=compat -e '.[dev,bench]'
+	@touch $@
+
+help:  ## print this chain
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "make %-8s %s\n", $$1, $$2}' $(MAKEFILE_LIST)

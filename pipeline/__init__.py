@@ -1,0 +1,1 @@
+"""deamat: from raw laboratory files of soft dielectric elastomers to material cards."""

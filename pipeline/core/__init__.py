@@ -1,0 +1,1 @@
+"""Types, units, errors, configuration: what every floor above stands on."""

@@ -1,0 +1,75 @@
+"""A value with its unit and the two kinds of uncertainty that behave differently in a mean."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from pipeline.core.errors import OutOfRange
+
+
+@dataclass(frozen=True, slots=True)
+class Contribution:
+    """One line of an uncertainty budget: a standard uncertainty and where it comes from.
+
+    Parameters
+    ----------
+    source : what causes it, such as `"load cell calibration"`
+    u : standard uncertainty `[unit of the value]`
+    shared : one error common to all specimens of a campaign (it never averages away)
+    """
+
+    source: str
+    u: float
+    shared: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A value in SI with independent and shared standard uncertainty.
+
+    The combined standard uncertainty is `u = sqrt(u_independent^2 + u_shared^2)`. A mean over n
+    specimens divides only the independent part by sqrt(n).
+
+    Parameters
+    ----------
+    value : the value `[unit]`
+    unit : SI unit, such as `"Pa"`; `"1"` for a pure number
+    u_independent : scatter between specimens, fit `[unit]`
+    u_shared : gauge, load cell, plate area: common to the campaign `[unit]`
+
+    Raises
+    ------
+    OutOfRange : a value that is not finite, or an uncertainty that is negative or not finite
+
+    Source: JCGM 100:2008 (GUM), 5.1 and 5.2.
+    """
+
+    value: float
+    unit: str
+    u_independent: float = 0.0
+    u_shared: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not math.isfinite(self.value):
+            raise OutOfRange(f"a quantity must be finite, not {self.value} {self.unit}")
+        for name, u in (("u_independent", self.u_independent), ("u_shared", self.u_shared)):
+            if not (math.isfinite(u) and u >= 0):
+                raise OutOfRange(f"{name} must be finite and not negative, not {u} {self.unit}")
+
+    @property
+    def standard_uncertainty(self) -> float:
+        """Combined standard uncertainty `[unit]`."""
+        return math.hypot(self.u_independent, self.u_shared)
+
+    @classmethod
+    def from_budget(cls, value: float, unit: str, budget: Iterable[Contribution]) -> Quantity:
+        """Add up a budget in quadrature, shared and independent lines apart."""
+        lines = list(budget)
+        return cls(
+            value,
+            unit,
+            math.sqrt(sum(c.u**2 for c in lines if not c.shared)),
+            math.sqrt(sum(c.u**2 for c in lines if c.shared)),
+        )

@@ -1,0 +1,249 @@
+"""The nouns of the pipeline, in the order in which data flow: from Recording to PropertyRecord."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.core.errors import OutOfRange
+from pipeline.core.quantity import Contribution, Quantity
+
+FloatArray = NDArray[np.float64]
+Condition = str | float | tuple[float, float]
+Detail = float | int | str
+
+
+@dataclass(frozen=True, slots=True)
+class Flag:
+    """Something a reader of the value must know; it changes no number."""
+
+    name: str
+    detail: str
+
+    def __str__(self) -> str:
+        return f"{self.name}: {self.detail}"
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """Where a recording came from, down to the lines that hold its data.
+
+    Parameters
+    ----------
+    path : relative to `raw/`, with forward slashes
+    sha256 : of the file's bytes
+    first_line, last_line : the data rows, as lines counted from 1
+    encoding : as found (`utf-8`, `utf-8-sig`, `utf-16`, `latin-1`)
+    reader, reader_version : which format read it
+    """
+
+    path: str
+    sha256: str
+    first_line: int
+    last_line: int
+    encoding: str
+    reader: str
+    reader_version: int
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """Columns in SI as one instrument wrote them, with its metadata and source; no physics.
+
+    Parameters
+    ----------
+    columns : name with its SI unit (`force_N`) to values, shape (n,) each
+    metadata : what the file says about itself, as text
+    column_units : label to unit as written over each column, to hold against other statements
+    flags : what the reader noticed (contradictions, identical rows, odd endings)
+    """
+
+    columns: Mapping[str, FloatArray]
+    metadata: Mapping[str, str]
+    column_units: Mapping[str, str]
+    source: Source
+    flags: tuple[Flag, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Specimen:
+    """One row of a register.
+
+    Parameters
+    ----------
+    id, material, campaign, technique : who it is
+    file : data file relative to `raw/`, or None where the register holds the value itself
+    format : name of a reader, or None to detect it
+    numbers : geometry and settings in SI by name (`diameter_m`), each with its uncertainty
+    conditions : what tells its record apart, keys of `core.properties.CONDITIONS`
+    notes : every other column, kept as text
+    register, line : the register's path relative to `raw/`, and the row's line
+    """
+
+    id: str
+    material: str
+    campaign: str
+    technique: str
+    file: str | None
+    format: str | None
+    numbers: Mapping[str, Quantity]
+    conditions: Mapping[str, Condition]
+    notes: Mapping[str, str]
+    register: str
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class MeasuredValue:
+    """One property of one specimen.
+
+    Parameters
+    ----------
+    key : property key
+    quantity : value with uncertainty; `budget` lists where that comes from
+    method : estimator and window in words
+    conditions : what the technique itself fixes (window, rate)
+    lines : first and last line of the file that the value rests on, None without a file
+    diagnostics : numbers worth keeping (samples in the window, r, slope per bin)
+    """
+
+    key: str
+    quantity: Quantity
+    budget: tuple[Contribution, ...]
+    method: str
+    conditions: Mapping[str, Condition] = field(default_factory=dict)
+    lines: tuple[int, int] | None = None
+    diagnostics: Mapping[str, Detail] = field(default_factory=dict)
+    flags: tuple[Flag, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Refusal:
+    """A value that was asked for and not given, and why."""
+
+    key: str
+    reason: str
+    material: str
+    campaign: str
+    specimen: str | None = None
+    conditions: Mapping[str, Condition] = field(default_factory=dict)
+    diagnostics: Mapping[str, Detail] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Measurement:
+    """What one specimen gave: values, refusals, and the reduced curve behind them.
+
+    Parameters
+    ----------
+    curve : reduced columns by name with unit (`nominal_strain`, `nominal_stress_Pa`), shape (n,)
+    """
+
+    specimen: Specimen
+    values: tuple[MeasuredValue, ...]
+    refusals: tuple[Refusal, ...] = ()
+    curve: Mapping[str, FloatArray] = field(default_factory=dict)
+    source: Source | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """One specimen's value behind a record, down to the bytes it rests on."""
+
+    specimen: str
+    value: float
+    u_independent: float
+    u_shared: float
+    register: str
+    register_line: int
+    path: str | None
+    sha256: str | None
+    first_line: int | None
+    last_line: int | None
+    reader: str | None
+    technique: str
+    diagnostics: Mapping[str, Detail] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class PropertyRecord:
+    """What one material has under one set of conditions, in one campaign.
+
+    Parameters
+    ----------
+    sd : standard deviation between specimens `[unit]`; None for one specimen
+    ci95 : 95 % confidence interval `[unit]`
+    budget : contributions to the standard uncertainty of `quantity`
+    """
+
+    key: str
+    material: str
+    campaign: str
+    quantity: Quantity
+    n: int
+    sd: float | None
+    ci95: tuple[float, float]
+    conditions: Mapping[str, Condition]
+    method: str
+    budget: tuple[Contribution, ...]
+    origins: tuple[Origin, ...]
+    flags: tuple[Flag, ...] = ()
+    diagnostics: Mapping[str, Detail] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Law:
+    r"""A fitted polynomial $y(x) = \sum_k c_k x^k$ that answers with its uncertainty.
+
+    Parameters
+    ----------
+    key : property key of y; `kind` names the form
+    argument, argument_unit : what x is
+    coefficients : shape (p,), lowest order first `[unit / argument_unit^k]`
+    covariance : shape (p, p)
+    valid : range of x in which the law holds `[argument_unit]`
+
+    Raises
+    ------
+    OutOfRange : asked for an x outside `valid`
+    """
+
+    key: str
+    material: str
+    campaign: str
+    kind: str
+    unit: str
+    argument: str
+    argument_unit: str
+    coefficients: tuple[float, ...]
+    covariance: tuple[tuple[float, ...], ...]
+    valid: tuple[float, float]
+    conditions: Mapping[str, Condition]
+    method: str
+    origins: tuple[Origin, ...] = ()
+    flags: tuple[Flag, ...] = ()
+    diagnostics: Mapping[str, Detail] = field(default_factory=dict)
+
+    def __call__(self, x: float) -> Quantity:
+        """Evaluate the law at x `[argument_unit]`."""
+        low, high = self.valid
+        if not low <= x <= high:
+            raise OutOfRange(
+                f"{self.key} of {self.material} is known for {self.argument} from {low:g} to "
+                f"{high:g} {self.argument_unit}, not at {x:g}"
+            )
+        powers = np.power(x, np.arange(len(self.coefficients), dtype=np.float64))
+        variance = float(powers @ np.asarray(self.covariance) @ powers)
+        return Quantity(float(powers @ np.asarray(self.coefficients)), self.unit, variance**0.5)
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """What a technique says of one material in one campaign."""
+
+    records: tuple[PropertyRecord, ...]
+    laws: tuple[Law, ...] = ()
+    refusals: tuple[Refusal, ...] = ()

@@ -1,0 +1,57 @@
+"""What a technique declares about itself; the driver knows nothing else of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import BaseModel
+
+from pipeline.core.instruments import Machine
+from pipeline.core.quantity import Quantity
+from pipeline.core.records import Measurement, Recording, Specimen, Summary
+
+
+@dataclass(frozen=True, slots=True)
+class Context:
+    """What a technique is handed beside the specimen and its recording.
+
+    Parameters
+    ----------
+    config : an instance of the technique's own config class
+    machine : the limits of the instrument that the register names
+    needs : the properties of other techniques that it declared, for the same material
+    """
+
+    config: Any
+    machine: Machine
+    needs: Mapping[str, Quantity]
+
+
+@dataclass(frozen=True, slots=True)
+class Technique:
+    """One technique: a room under `techniques/` exports exactly one of these.
+
+    Parameters
+    ----------
+    key : the folder in a campaign and the section in `config/methods.toml`
+    version : raise it when `reduce` or `summarise` may give another answer
+    yields, needs : property keys it gives, and those of other techniques it asks for
+    config : pydantic class of its section
+    required, optional : register columns by SI name (`diameter_m`) that it reads
+    reduce : one specimen's recording to a measurement; a refused value is a `Refusal` in it
+    summarise : all measurements of one material under one set of conditions to a summary
+    figure : draws a material's measurements into the given axes; None for a technique without one
+    """
+
+    key: str
+    version: int
+    yields: tuple[str, ...]
+    needs: tuple[str, ...]
+    config: type[BaseModel]
+    required: tuple[str, ...]
+    optional: tuple[str, ...]
+    reduce: Callable[[Specimen, Recording | None, Context], Measurement]
+    summarise: Callable[[Sequence[Measurement], Context], Summary]
+    figure: Callable[[Any, Sequence[Measurement], Summary], None] | None = None

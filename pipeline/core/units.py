@@ -1,0 +1,119 @@
+"""The closed table of units: every text that may stand for a unit, and its factor to SI.
+
+Conversion happens only at the two edges (formats in, exports and report out). A unit that is not
+in this table is an error, never a guess; `pint` checks the table in the tests.
+"""
+
+from __future__ import annotations
+
+import difflib
+
+from pipeline.core.errors import PipelineError
+
+_KELVIN_AT_0_C = 273.15
+
+# unit as written -> (SI unit, factor, offset): SI = factor * written + offset
+UNITS: dict[str, tuple[str, float, float]] = {
+    "1": ("1", 1.0, 0.0),
+    "-": ("1", 1.0, 0.0),
+    "mm/mm": ("1", 1.0, 0.0),
+    "%": ("1", 0.01, 0.0),
+    "percent": ("1", 0.01, 0.0),
+    "m": ("m", 1.0, 0.0),
+    "cm": ("m", 1e-2, 0.0),
+    "mm": ("m", 1e-3, 0.0),
+    "um": ("m", 1e-6, 0.0),
+    "nm": ("m", 1e-9, 0.0),
+    "m2": ("m2", 1.0, 0.0),
+    "cm2": ("m2", 1e-4, 0.0),
+    "mm2": ("m2", 1e-6, 0.0),
+    "s": ("s", 1.0, 0.0),
+    "sec": ("s", 1.0, 0.0),
+    "ms": ("s", 1e-3, 0.0),
+    "min": ("s", 60.0, 0.0),
+    "h": ("s", 3600.0, 0.0),
+    "N": ("N", 1.0, 0.0),
+    "mN": ("N", 1e-3, 0.0),
+    "uN": ("N", 1e-6, 0.0),
+    "kN": ("N", 1e3, 0.0),
+    "Pa": ("Pa", 1.0, 0.0),
+    "kPa": ("Pa", 1e3, 0.0),
+    "MPa": ("Pa", 1e6, 0.0),
+    "GPa": ("Pa", 1e9, 0.0),
+    "N/mm2": ("Pa", 1e6, 0.0),
+    "N/mm^2": ("Pa", 1e6, 0.0),
+    "kg": ("kg", 1.0, 0.0),
+    "g": ("kg", 1e-3, 0.0),
+    "mg": ("kg", 1e-6, 0.0),
+    "kg/m3": ("kg/m3", 1.0, 0.0),
+    "m/s": ("m/s", 1.0, 0.0),
+    "mm/s": ("m/s", 1e-3, 0.0),
+    "mm/min": ("m/s", 1e-3 / 60.0, 0.0),
+    "mm_per_min": ("m/s", 1e-3 / 60.0, 0.0),
+    "mm_per_s": ("m/s", 1e-3, 0.0),
+    "1/s": ("1/s", 1.0, 0.0),
+    "per_s": ("1/s", 1.0, 0.0),
+    "rpm": ("rpm", 1.0, 0.0),  # a setting of the viscometer, kept as it is spoken
+    "Hz": ("Hz", 1.0, 0.0),
+    "kHz": ("Hz", 1e3, 0.0),
+    "V": ("V", 1.0, 0.0),
+    "kV": ("V", 1e3, 0.0),
+    "A": ("A", 1.0, 0.0),
+    "mA": ("A", 1e-3, 0.0),
+    "uA": ("A", 1e-6, 0.0),
+    "F": ("F", 1.0, 0.0),
+    "pF": ("F", 1e-12, 0.0),
+    "ohm": ("ohm", 1.0, 0.0),
+    "V/m": ("V/m", 1.0, 0.0),
+    "V/um": ("V/m", 1e6, 0.0),
+    "V_per_um": ("V/m", 1e6, 0.0),
+    "kV_per_mm": ("V/m", 1e6, 0.0),
+    "V_per_s": ("V/s", 1.0, 0.0),
+    "kV_per_s": ("V/s", 1e3, 0.0),
+    "V/s": ("V/s", 1.0, 0.0),
+    "Pa.s": ("Pa.s", 1.0, 0.0),
+    "Pas": ("Pa.s", 1.0, 0.0),
+    "mPa.s": ("Pa.s", 1e-3, 0.0),
+    "mPas": ("Pa.s", 1e-3, 0.0),
+    "K": ("K", 1.0, 0.0),
+    "C": ("K", 1.0, _KELVIN_AT_0_C),
+    "degC": ("K", 1.0, _KELVIN_AT_0_C),
+}
+
+_SPELLINGS = str.maketrans({"\u00b5": "u", "\u03bc": "u", "\u00b2": "2", "\u00b3": "3", "\u00b0": ""})
+
+
+class UnknownUnit(PipelineError):
+    """A unit that the closed table does not hold."""
+
+
+def known(unit: str) -> bool:
+    """Say whether the table holds this unit, in any of its spellings."""
+    return unit.strip().translate(_SPELLINGS) in UNITS
+
+
+def si_factor(unit: str) -> tuple[str, float, float]:
+    """Give the SI unit, factor and offset of a unit: `SI = factor * written + offset`.
+
+    Raises
+    ------
+    UnknownUnit : the unit is not in the table; the message names the nearest ones
+    """
+    spelt = unit.strip().translate(_SPELLINGS)
+    try:
+        return UNITS[spelt]
+    except KeyError:
+        near = difflib.get_close_matches(spelt, UNITS, n=3) or sorted(UNITS)
+        raise UnknownUnit(f"unknown unit {unit!r}; known units near it: {', '.join(near)}") from None
+
+
+def to_si(value: float, unit: str) -> float:
+    """Convert a value to SI, raising `UnknownUnit` for a unit outside the table."""
+    _, factor, offset = si_factor(unit)
+    return factor * value + offset
+
+
+def from_si(value: float, unit: str) -> float:
+    """Convert an SI value to the unit asked for (the edge towards exports and report)."""
+    _, factor, offset = si_factor(unit)
+    return (value - offset) / factor

@@ -1,0 +1,1 @@
+"""One file per instrument export: bytes in, a Recording in SI out."""

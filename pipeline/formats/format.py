@@ -1,0 +1,29 @@
+"""What a format declares about itself."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from pipeline.core.records import Recording
+from pipeline.formats.rawfile import RawFile
+
+
+@dataclass(frozen=True, slots=True)
+class Format:
+    """One export format: a file under `formats/` declares exactly one of these as `FORMAT`.
+
+    Parameters
+    ----------
+    name : what registers and messages call it
+    version : raise it when `read` may give other numbers
+    title : instrument and form in words
+    recognises : does the file's head look like this format? Given `RawFile.head`
+    read : the whole file to a Recording, or `RawFileError`
+    """
+
+    name: str
+    version: int
+    title: str
+    recognises: Callable[[list[str]], bool]
+    read: Callable[[RawFile], Recording]

@@ -1,0 +1,77 @@
+"""A raw file in memory: its bytes once, its text decoded by what the bytes themselves say."""
+
+from __future__ import annotations
+
+import codecs
+import hashlib
+from dataclasses import dataclass
+from functools import cached_property
+
+from pipeline.core.errors import RawFileError
+
+
+@dataclass(frozen=True)
+class RawFile:
+    """The bytes of one file under `raw/`.
+
+    Parameters
+    ----------
+    path : relative to `raw/`, for messages and origins
+    data : the bytes as they are on disk
+    ends_open : the campaign declares that this exporter writes no final line end
+    """
+
+    path: str
+    data: bytes
+    ends_open: bool = False
+
+    @cached_property
+    def sha256(self) -> str:
+        """Hash of the bytes."""
+        return hashlib.sha256(self.data).hexdigest()
+
+    @cached_property
+    def _decoded(self) -> tuple[bytes, str]:
+        data = self.data
+        if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+            try:
+                return data.decode("utf-16").encode(), "utf-16"
+            except UnicodeDecodeError as error:
+                raise RawFileError(
+                    self.path, f"starts as UTF-16 but breaks at byte {error.start}", mend="export it again"
+                ) from error
+        nul = data.find(b"\0")
+        if nul >= 0:
+            line = data.count(b"\n", 0, nul) + 1
+            raise RawFileError(
+                self.path,
+                "a NUL byte in a text file",
+                line=line,
+                value="\\x00",
+                mend="export it again (UTF-16 text must start with its byte order mark)",
+            )
+        if data.startswith(codecs.BOM_UTF8):
+            return data[3:], "utf-8-sig"
+        if data.isascii():
+            return data, "utf-8"
+        try:
+            data.decode("utf-8")
+        except UnicodeDecodeError:
+            return data.decode("latin-1").encode(), "latin-1"
+        return data, "utf-8"
+
+    @property
+    def body(self) -> bytes:
+        """The text as UTF-8 bytes without a byte order mark."""
+        return self._decoded[0]
+
+    @property
+    def encoding(self) -> str:
+        """The encoding as found."""
+        return self._decoded[1]
+
+    @cached_property
+    def head(self) -> list[str]:
+        """The first 64 lines as text, without their line ends: enough for any header."""
+        lines = self.body[:16384].decode("utf-8", "replace").split("\n", 64)
+        return [line.rstrip("\r") for line in lines[:64]]

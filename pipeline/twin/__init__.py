@@ -1,0 +1,1 @@
+"""Simulates a whole campaign with known truth, in the instruments' own formats."""
