@@ -1,0 +1,58 @@
+"""The account of every file under `raw/`: what became of it, once and only once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Status = Literal["used", "refused", "rejected", "excluded"]
+Role = Literal["recording", "register", "campaign", "manifest", "document", "unnamed", "missing"]
+
+
+@dataclass(frozen=True, slots=True)
+class FileEntry:
+    """One file and its fate.
+
+    Parameters
+    ----------
+    path : relative to `raw/`
+    sha256 : of its bytes, empty for a file that is missing
+    role : what it is to its campaign; `unnamed` is a data file that no register names
+    status : `used` gave at least one value; `refused` was read and gave none; `rejected` could not
+        be read for certain; `excluded` is named in `config/exclusions.toml`
+    manifest : `ok`, or how it departs from the manifest: `changed`, `missing`, `extra`
+    reason, line, column : why, and where in the file
+    """
+
+    path: str
+    sha256: str
+    size: int
+    role: Role
+    status: Status
+    manifest: Literal["ok", "changed", "missing", "extra"] = "ok"
+    reason: str = ""
+    line: int | None = None
+    column: int | None = None
+
+    @property
+    def violates(self) -> bool:
+        """Does this entry alone make the run end with a non-zero status?"""
+        return self.status != "excluded" and (self.status == "rejected" or self.manifest != "ok")
+
+
+@dataclass(frozen=True, slots=True)
+class Provenance:
+    """Which code and configuration made a release.
+
+    Parameters
+    ----------
+    version : of the distribution
+    code : digest of the package's sources
+    stages : name to declared version of every reader and technique (`reader:mark10` to 1)
+    config : file name to sha256 of the configuration files
+    """
+
+    version: str
+    code: str
+    stages: tuple[tuple[str, int], ...]
+    config: tuple[tuple[str, str], ...]
