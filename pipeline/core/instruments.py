@@ -1,4 +1,4 @@
-"""What is declared about instruments: resolution, calibration, gauges. `config/instruments.toml`."""
+"""`config/instruments.toml`: what is declared of machines and gauges."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ class Declared(BaseModel):
 
 
 class Gauge(Declared):
-    """Standard uncertainties of a length as one gauge gives it, where a register has no `u_` column."""
+    """Standard uncertainties of a length where its register has no `u_` column."""
 
     u_reading_m: float = Field(default=1e-5, ge=0, description="repeatability, one per specimen")
     u_calibration_m: float = Field(default=1e-5, ge=0, description="shared by all specimens")
 
 
 class Machine(Declared):
-    """A testing machine with its cells: what its numbers are good for (relative ones are 1 sigma)."""
+    """What the numbers of a testing machine are good for (relative ones are 1 sigma)."""
 
     match: str = Field(default="", description="regular expression on the register's instrument")
     force_resolution_N: float = Field(default=0.0, ge=0)

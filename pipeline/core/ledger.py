@@ -36,7 +36,7 @@ class FileEntry:
 
     @property
     def violates(self) -> bool:
-        """Does this entry alone make the run end with a non-zero status?"""
+        """Say whether this entry alone makes the run end with a non-zero status."""
         return self.status != "excluded" and (self.status == "rejected" or self.manifest != "ok")
 
 

@@ -80,7 +80,9 @@ UNITS: dict[str, tuple[str, float, float]] = {
     "degC": ("K", 1.0, _KELVIN_AT_0_C),
 }
 
-_SPELLINGS = str.maketrans({"\u00b5": "u", "\u03bc": "u", "\u00b2": "2", "\u00b3": "3", "\u00b0": ""})
+_SPELLINGS = str.maketrans(
+    {"\u00b5": "u", "\u03bc": "u", "\u00b2": "2", "\u00b3": "3", "\u00b0": ""}
+)
 
 
 class UnknownUnit(PipelineError):
@@ -104,7 +106,9 @@ def si_factor(unit: str) -> tuple[str, float, float]:
         return UNITS[spelt]
     except KeyError:
         near = difflib.get_close_matches(spelt, UNITS, n=3) or sorted(UNITS)
-        raise UnknownUnit(f"unknown unit {unit!r}; known units near it: {', '.join(near)}") from None
+        raise UnknownUnit(
+            f"unknown unit {unit!r}; known units near it: {', '.join(near)}"
+        ) from None
 
 
 def to_si(value: float, unit: str) -> float:

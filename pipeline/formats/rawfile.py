@@ -38,7 +38,9 @@ class RawFile:
                 return data.decode("utf-16").encode(), "utf-16"
             except UnicodeDecodeError as error:
                 raise RawFileError(
-                    self.path, f"starts as UTF-16 but breaks at byte {error.start}", mend="export it again"
+                    self.path,
+                    f"starts as UTF-16 but breaks at byte {error.start}",
+                    mend="export it again",
                 ) from error
         nul = data.find(b"\0")
         if nul >= 0:

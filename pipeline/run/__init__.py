@@ -1,1 +1,1 @@
-""""""
+"""The driver: what is stale, in parallel, published whole or not at all."""

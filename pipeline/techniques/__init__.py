@@ -1,1 +1,1 @@
-""""""
+"""One room per technique; this page holds the one list of them."""

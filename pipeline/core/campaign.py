@@ -1,0 +1,82 @@
+"""A campaign folder: `campaign.toml` and its place among the others. Only reads."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from pipeline.core.errors import RawFileError
+
+CAMPAIGN_FILE = "campaign.toml"
+MANIFEST_FILE = "MANIFEST.sha256"
+
+
+class CampaignInfo(BaseModel):
+    """What `campaign.toml` must and may say; further keys are the laboratory's own notes.
+
+    Parameters
+    ----------
+    synthetic : true marks every card, figure and page made from the campaign
+    timezone : of stamps without an offset
+    ends_open : the exporters of this campaign write no final line end
+    """
+
+    model_config = ConfigDict(extra="allow", frozen=True)
+
+    title: str
+    laboratory: str
+    licence: str
+    synthetic: bool
+    source: str = ""
+    note: str = ""
+    timezone: str = "UTC"
+    ends_open: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Campaign:
+    """One folder under `raw/` that has a `campaign.toml`."""
+
+    name: str
+    folder: Path
+    info: CampaignInfo
+
+    def __str__(self) -> str:
+        return self.name
+
+
+def find_campaigns(raw: Path) -> tuple[list[Path], list[str]]:
+    """List the campaign folders of `raw/` and name everything else there, which is left alone."""
+    folders, others = [], []
+    for entry in sorted(raw.iterdir()):
+        if entry.name.startswith("."):
+            continue
+        if entry.is_dir() and (entry / CAMPAIGN_FILE).is_file():
+            folders.append(entry)
+        else:
+            others.append(entry.name + ("/" if entry.is_dir() else ""))
+    return folders, others
+
+
+def load_campaign(folder: Path) -> Campaign:
+    """Read `campaign.toml`.
+
+    Raises
+    ------
+    RawFileError : it does not parse, or lacks a title, laboratory, licence or `synthetic`
+    """
+    path = f"{folder.name}/{CAMPAIGN_FILE}"
+    try:
+        data = tomllib.loads((folder / CAMPAIGN_FILE).read_bytes().decode("utf-8"))
+        info = CampaignInfo.model_validate(data)
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise RawFileError(path, f"not valid TOML: {error}") from error
+    except ValidationError as error:
+        said = "; ".join(f"{'.'.join(map(str, e['loc']))}: {e['msg']}" for e in error.errors())
+        raise RawFileError(
+            path, said, mend="a campaign declares title, laboratory, licence and synthetic"
+        ) from error
+    return Campaign(folder.name, folder, info)

@@ -1,0 +1,149 @@
+"""`config/`: TOML files, validated; defaults stand once, in the classes of `core` and the rooms."""
+
+from __future__ import annotations
+
+import difflib
+import hashlib
+import json
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, Field, RootModel, ValidationError
+
+from pipeline.core.errors import ConfigError
+from pipeline.core.instruments import Declared, Instruments
+
+M = TypeVar("M", bound=BaseModel)
+
+
+class Material(Declared):
+    """One material of `config/materials.toml`: the name people read."""
+
+    name: str
+
+
+class Exclusion(Declared):
+    """One file that is deliberately left out, and why."""
+
+    path: str = Field(description="relative to raw/, with forward slashes")
+    reason: str = Field(min_length=3)
+
+
+class Exclusions(Declared):
+    """`config/exclusions.toml`."""
+
+    exclude: tuple[Exclusion, ...] = ()
+
+
+class _Materials(RootModel[Mapping[str, Material]]):
+    """`config/materials.toml`: material id to what is known of it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Config:
+    """Everything the lab has declared.
+
+    Parameters
+    ----------
+    methods : technique key to an instance of its config class
+    files : file name to sha256, for provenance
+    """
+
+    materials: Mapping[str, Material]
+    instruments: Instruments
+    exclusions: Exclusions
+    methods: Mapping[str, BaseModel]
+    files: Mapping[str, str]
+
+    def name_of(self, material: str) -> str:
+        """Give the name people read; the id itself where none is declared."""
+        known = self.materials
+        return known[material].name if material in known else material
+
+
+def digest(model: BaseModel) -> str:
+    """Hash what a section says, whatever its layout and comments."""
+    text = json.dumps(model.model_dump(mode="json"), sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def load_config(folder: Path, techniques: Mapping[str, type[BaseModel]]) -> Config:
+    """Read and validate a configuration folder.
+
+    Parameters
+    ----------
+    folder : holds materials.toml, methods.toml, instruments.toml, exclusions.toml; a file that is
+        not there declares nothing
+    techniques : section of methods.toml to its class
+
+    Raises
+    ------
+    ConfigError : no such folder, TOML that does not parse, an unknown key (with the nearest known
+        one), a value out of range
+    """
+    if not folder.is_dir():
+        raise ConfigError(f"no configuration folder {folder}; give one with --config")
+    files: dict[str, str] = {}
+
+    def read(name: str) -> dict[str, Any]:
+        path = folder / name
+        if not path.is_file():
+            return {}
+        data = path.read_bytes()
+        files[name] = hashlib.sha256(data).hexdigest()
+        try:
+            return tomllib.loads(data.decode("utf-8"))
+        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+            raise ConfigError(f"{path}: {error}") from error
+
+    sections = read("methods.toml")
+    for section in sections:
+        if section not in techniques:
+            near = difflib.get_close_matches(section, techniques, n=1) or sorted(techniques)
+            raise ConfigError(
+                f"{folder / 'methods.toml'}: no technique is called {section!r}; "
+                f"nearest: {', '.join(near)}"
+            )
+    return Config(
+        materials=validate(_Materials, read("materials.toml"), folder / "materials.toml").root,
+        instruments=validate(Instruments, read("instruments.toml"), folder / "instruments.toml"),
+        exclusions=validate(Exclusions, read("exclusions.toml"), folder / "exclusions.toml"),
+        methods={
+            key: validate(cls, sections.get(key, {}), folder / "methods.toml", key)
+            for key, cls in techniques.items()
+        },
+        files=files,
+    )
+
+
+def validate(cls: type[M], data: Mapping[str, Any], path: Path, section: str = "") -> M:
+    """Validate one file or section, turning pydantic's complaints into sentences."""
+    try:
+        return cls.model_validate(data)
+    except ValidationError as error:
+        said = []
+        for e in error.errors():
+            where = ".".join([*([section] if section else []), *map(str, e["loc"])])
+            if e["type"] == "extra_forbidden":
+                key = str(e["loc"][-1])
+                near = difflib.get_close_matches(key, _field_names(cls), n=1)
+                hint = f"; did you mean {near[0]!r}?" if near else ""
+                said.append(f"unknown key {where!r}{hint}")
+            else:
+                said.append(f"{where}: {e['msg']} (found {e['input']!r})")
+        raise ConfigError(f"{path}: " + "; ".join(said)) from error
+
+
+def _field_names(cls: type[BaseModel]) -> set[str]:
+    """All field names of a model and of the models inside it."""
+    names: set[str] = set()
+    for name, field in cls.model_fields.items():
+        names.add(name)
+        inner = [field.annotation, *getattr(field.annotation, "__args__", ())]
+        for t in inner:
+            if isinstance(t, type) and issubclass(t, BaseModel):
+                names |= _field_names(t)
+    return names
