@@ -22,6 +22,7 @@ from pipeline.core.records import Condition, Specimen
 from pipeline.core.units import UNITS, si_factor
 
 REGISTER_FILE = "specimens.csv"
+REGISTER_FILES = (REGISTER_FILE, "observations.csv")
 
 _CONDITIONS = ("age", "cure")
 # Stems that always carry a unit: `diameter_furlong` is a slip, `curing_temperature` a note.

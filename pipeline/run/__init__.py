@@ -1,1 +1,75 @@
-"""The driver: what is stale, in parallel, published whole or not at all."""
+"""The driver: what is stale, in parallel, published whole or not at all.
+
+`run_all` imports nothing heavy until it knows that there is something to do.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable
+from typing import Any
+
+from pipeline.core.errors import ConfigError
+from pipeline.run.folders import Folders, look
+from pipeline.run.release import intact
+from pipeline.run.state import State
+
+
+def run_all(
+    folders: Folders,
+    workers: int | None,
+    progress: Callable[[str, int, int], None],
+    verify: bool = False,
+) -> dict[str, Any]:
+    """Bring `processed/` up to date and give the document that `summary.text` prints.
+
+    Parameters
+    ----------
+    workers : processes at most; None for one per core
+    progress : told (stage, done, total) as the run goes on
+    verify : hash every input again, whatever its time of change
+
+    Raises
+    ------
+    ConfigError : a folder is not there, the configuration does not hold, another run is at work
+    """
+    for what, folder in (("--raw", folders.raw), ("--config", folders.config)):
+        if not folder.is_dir():
+            raise ConfigError(f"no folder {folder}; give one with {what}")
+    with State(folders.processed) as state:
+        seen = look(folders)
+        places = json.dumps([str(folders.raw.resolve()), str(folders.config.resolve())])
+        if (
+            not verify
+            and state.read_note("places") == places
+            and state.unchanged(seen)
+            and intact(folders.processed, state.read_note("published"))
+        ):
+            document: dict[str, Any] = json.loads(state.read_note("document") or "{}")
+            return {**document, "nothing_to_do": True}
+        from pipeline.run.process import process  # numpy, pydantic: only when there is work
+
+        cores = len(os.sched_getaffinity(0))
+        document = process(
+            folders, state, seen, workers=workers or cores, progress=progress, verify=verify
+        )
+        state.note("places", places)
+        state.note("document", json.dumps(document))
+        return {**document, "nothing_to_do": False}
+
+
+def explain(folders: Folders) -> dict[str, Any]:
+    """Say what a run would redo now and why, and what the last one redid."""
+    with State(folders.processed) as state:
+        from pipeline.run.process import process
+
+        now = process(folders, state, look(folders), workers=1, progress=_silent, dry=True)
+        last = json.loads(state.read_note("document") or '{"redone": []}')
+        state.db.rollback()
+    return {"now": now["redone"], "last": last["redone"]}
+
+
+def _silent(stage: str, done: int, total: int) -> None:
+    """Tell nobody."""
+    del stage, done, total

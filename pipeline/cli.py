@@ -1,0 +1,230 @@
+"""The command `deamat`. Heavy modules are imported inside the commands that need them."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+from pipeline.core.errors import ConfigError, PipelineError
+from pipeline.run.folders import Folders
+
+WELL, REJECTED, WRONG = 0, 1, 2
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+_EPILOG = """\b
+Exit codes:
+  0  all well (a refused value is reported and is well)
+  1  a file was rejected or a manifest is violated, and no exclusion names it
+  2  wrong usage or configuration
+"""
+
+
+def _home() -> Path:
+    """The folder with the Makefile: the nearest one upwards that has `raw/` and `config/`."""
+    here = Path.cwd()
+    for folder in (here, *here.parents):
+        if (folder / "raw").is_dir() and (folder / "config").is_dir():
+            return folder
+    return here
+
+
+def _folders(command: F) -> F:
+    """Give a command the options --raw, --config and --processed."""
+    for name, what in (
+        ("processed", "results"),
+        ("config", "configuration"),
+        ("raw", "raw data"),
+    ):
+        command = click.option(
+            f"--{name}",
+            type=click.Path(file_okay=False, path_type=Path),
+            help=f"{what} [default: {name}/ beside the Makefile]",
+        )(command)
+    return command
+
+
+def _where(raw: Path | None, config: Path | None, processed: Path | None) -> Folders:
+    home = _home()
+    return Folders(raw or home / "raw", config or home / "config", processed or home / "processed")
+
+
+_json = click.option("--json", "as_json", is_flag=True, help="print JSON for a program")
+
+
+@click.group(epilog=_EPILOG, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="deamat")
+def cli() -> None:
+    """From raw laboratory files of soft dielectric elastomers to material cards people trust."""
+
+
+@cli.command("all")
+@_folders
+@_json
+@click.option("--workers", type=click.IntRange(1), help="processes [default: one per core]")
+@click.option("--verify", is_flag=True, help="hash every file again, whatever its time of change")
+def all_(
+    raw: Path | None,
+    config: Path | None,
+    processed: Path | None,
+    as_json: bool,
+    workers: int | None,
+    verify: bool,
+) -> None:
+    """Reprocess raw/ into processed/: only what changed is done again."""
+    from pipeline.run import run_all, summary
+
+    folders = _where(raw, config, processed)
+    document = run_all(folders, workers, _silent if as_json else _progress(), verify)
+    if as_json:
+        click.echo(json.dumps(document, indent=1))
+    else:
+        click.echo(summary.text(document))
+        done = [] if document["nothing_to_do"] else document["redone"]
+        click.echo(summary.redone(done))
+    sys.exit(document["exit_code"])
+
+
+@cli.command()
+@_folders
+@_json
+def explain(raw: Path | None, config: Path | None, processed: Path | None, as_json: bool) -> None:
+    """Say what a run would redo now and why, and what the last run redid."""
+    from pipeline.run import explain as explain_run
+
+    said = explain_run(_where(raw, config, processed))
+    if as_json:
+        click.echo(json.dumps(said, indent=1))
+        return
+    for when, label in (("now", "would be redone now"), ("last", "was redone by the last run")):
+        click.echo(f"{label}: " + ("nothing" if not said[when] else f"{len(said[when])}"))
+        for line in said[when]:
+            click.echo(f"  {line}")
+
+
+@cli.command()
+@_folders
+@_json
+def audit(raw: Path | None, config: Path | None, processed: Path | None, as_json: bool) -> None:
+    """Hash every raw file again and account for each of them exactly once."""
+    from pipeline.run.audit import audit as audit_run
+    from pipeline.run.audit import audit_text
+
+    document = audit_run(_where(raw, config, processed))
+    click.echo(json.dumps(document, indent=1) if as_json else audit_text(document))
+    sys.exit(document["exit_code"])
+
+
+@cli.command()
+@click.argument("material")
+@_folders
+@_json
+def card(
+    material: str, raw: Path | None, config: Path | None, processed: Path | None, as_json: bool
+) -> None:
+    """Show the card of MATERIAL."""
+    from pipeline.materials.database import open_database
+    from pipeline.materials.present import card_text
+
+    with open_database(_where(raw, config, processed).processed) as database:
+        found = database[material]
+        document = found.to_document()
+    click.echo(json.dumps(document, indent=1) if as_json else card_text(found))
+
+
+@cli.command()
+@click.argument("material")
+@click.argument("property_key", metavar="PROPERTY")
+@click.option(
+    "--where", "-w", multiple=True, metavar="KEY=VALUE", help="a condition: age='2 months'"
+)
+@_folders
+@_json
+def trace(
+    material: str,
+    property_key: str,
+    where: tuple[str, ...],
+    raw: Path | None,
+    config: Path | None,
+    processed: Path | None,
+    as_json: bool,
+) -> None:
+    """Show the chain from PROPERTY of MATERIAL back to the raw bytes."""
+    from pipeline.materials.database import open_database
+    from pipeline.materials.trace import trace as trace_value
+
+    conditions = dict(_pair(w) for w in where)
+    with open_database(_where(raw, config, processed).processed) as database:
+        chain = trace_value(database, material, property_key, **conditions)
+    click.echo(json.dumps(chain.to_document(), indent=1) if as_json else chain.text())
+
+
+@cli.command()
+@click.argument("campaign")
+@_folders
+@click.option("--accept", is_flag=True, help="accept changed and missing files as well")
+def register(
+    campaign: str, raw: Path | None, config: Path | None, processed: Path | None, accept: bool
+) -> None:
+    """Write or extend the manifest of CAMPAIGN: the one command that writes into raw/."""
+    from pipeline.run.register import register as register_campaign
+
+    result = register_campaign(_where(raw, config, processed).raw, campaign, accept)
+    click.echo(result.text)
+    sys.exit(REJECTED if result.pending else WELL)
+
+
+@cli.command()
+@click.option("--seed", type=int, required=True, help="same seed, same bytes")
+@click.option("--out", type=click.Path(path_type=Path, file_okay=False), required=True)
+def simulate(seed: int, out: Path) -> None:
+    """Write a SYNTHETIC campaign with known truth into --out (raw/ below it, truth beside)."""
+    from pipeline.twin.campaign import simulate as simulate_campaign
+
+    click.echo(f"SYNTHETIC campaign written: {simulate_campaign(out, seed)}")
+
+
+def _pair(text: str) -> tuple[str, str]:
+    key, equals, value = text.partition("=")
+    if not equals:
+        raise click.BadParameter(f"{text!r} is not KEY=VALUE", param_hint="--where")
+    return key, value
+
+
+def _progress() -> Callable[[str, int, int], None]:
+    """Show a bar on a terminal, one line a stage elsewhere."""
+    if not sys.stderr.isatty():
+
+        def line(stage: str, done: int, total: int) -> None:
+            if done == total:
+                click.echo(f"{stage}: {total}", err=True)
+
+        return line
+
+    def bar(stage: str, done: int, total: int) -> None:
+        filled = 30 * done // total if total else 30
+        click.echo(f"\r{stage:<14}[{'#' * filled:<30}] {done}/{total}", err=True, nl=done == total)
+
+    return bar
+
+
+def _silent(stage: str, done: int, total: int) -> None:
+    """Tell nobody."""
+    del stage, done, total
+
+
+def main() -> None:
+    """Run the command; a mistake in usage or configuration ends with code 2 and a sentence."""
+    try:
+        cli()
+    except ConfigError as error:
+        click.echo(f"deamat: {error}", err=True)
+        sys.exit(WRONG)
+    except PipelineError as error:
+        click.echo(f"deamat: {error}", err=True)
+        sys.exit(REJECTED if error.__class__.__name__ == "RawFileError" else WRONG)

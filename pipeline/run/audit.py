@@ -1,0 +1,68 @@
+"""`deamat audit`: every raw file hashed again and accounted for exactly once."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import asdict
+from typing import Any
+
+from pipeline.core.ledger import FileEntry
+from pipeline.run import run_all
+from pipeline.run.folders import Folders, look
+
+
+def audit(folders: Folders) -> dict[str, Any]:
+    """Verify every hash, bring the results up to date and give the whole account.
+
+    The document holds `exit_code`, `files` (one entry each) and `unaccounted`, which must be empty.
+    """
+    from pipeline.materials.database import open_database
+
+    document = run_all(folders, 1, lambda *_: None, verify=True)
+    with open_database(folders.processed) as database:
+        entries = list(database.files())
+    campaigns = {c["name"] for c in document["campaigns"]}
+    there = {
+        path.removeprefix("raw/")
+        for path in look(folders)
+        if path.startswith("raw/") and path.split("/")[1] in campaigns
+    }
+    counts = Counter(e.path for e in entries)
+    return {
+        "exit_code": document["exit_code"],
+        "release": document["release"],
+        "files": [asdict(e) for e in entries],
+        "manifest": document["manifest"],
+        "left_alone": document["left_alone"],
+        "unaccounted": sorted(there - set(counts)),
+        "twice": sorted(path for path, n in counts.items() if n > 1),
+    }
+
+
+def audit_text(document: dict[str, Any]) -> str:
+    """Write the account as a page: what is amiss in full, what is well in counts."""
+    entries = [FileEntry(**e) for e in document["files"]]
+    counts = Counter((e.path.partition("/")[0], e.role, e.status) for e in entries)
+    lines = [f"release {document['release']}: {len(entries)} files, each accounted for once", ""]
+    lines += [
+        f"{campaign:<28} {role:<10} {status:<9} {n:>5}"
+        for (campaign, role, status), n in sorted(counts.items())
+    ]
+    for title, wanted in (
+        ("rejected", [e for e in entries if e.status == "rejected"]),
+        ("refused", [e for e in entries if e.status == "refused"]),
+        ("excluded", [e for e in entries if e.status == "excluded"]),
+        ("not as registered", [e for e in entries if e.manifest != "ok"]),
+    ):
+        if wanted:
+            lines += ["", f"{title}:", *(f"  {_line(e)}" for e in wanted)]
+    for what in ("unaccounted", "twice"):
+        lines += [f"{what}: {path}" for path in document[what]]
+    if document["left_alone"]:
+        lines += ["", f"left alone: {', '.join(document['left_alone'])}"]
+    return "\n".join(lines)
+
+
+def _line(entry: FileEntry) -> str:
+    reason = entry.reason if entry.path in entry.reason else f"{entry.path}: {entry.reason}"
+    return f"[{entry.manifest}] {reason}" if entry.manifest != "ok" else reason

@@ -1,0 +1,96 @@
+"""Stale or not: holds what a subject would be made from against what it was made from."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import pickle
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from pipeline.run.state import State
+
+STALE = "to be redone"
+
+
+@dataclass(frozen=True, slots=True)
+class Redo:
+    """One thing that was or will be redone, and why."""
+
+    stage: str
+    subject: str
+    why: str
+
+    def __str__(self) -> str:
+        return f"{self.stage} {self.subject}: {self.why}"
+
+
+def digest(value: object) -> str:
+    """Hash a frozen value by its repr (dataclasses, tuples, dicts in their written order)."""
+    return hashlib.sha256(repr(value).encode()).hexdigest()[:16]
+
+
+def key_of(components: Mapping[str, str]) -> str:
+    """One key for a set of named components."""
+    return hashlib.sha256(json.dumps(components, sort_keys=True).encode()).hexdigest()[:24]
+
+
+@dataclass
+class Book:
+    """The account of one run: asked for every subject of every stage, in their order."""
+
+    state: State
+    redone: list[Redo] = field(default_factory=list)
+    _asked: dict[str, set[str]] = field(default_factory=dict)
+    _made: dict[str, dict[str, tuple[str, dict[str, str]]]] = field(default_factory=dict)
+
+    def _known(self, stage: str) -> dict[str, tuple[str, dict[str, str]]]:
+        if stage not in self._made:
+            self._made[stage] = self.state.made(stage)
+        return self._made[stage]
+
+    def known_component(self, stage: str, subject: str, name: str) -> str | None:
+        """Give a component that is only known once the subject was made (the reader of a file)."""
+        known = self._known(stage)
+        return known[subject][1].get(name) if subject in known else None
+
+    def fresh(self, stage: str, subject: str, components: Mapping[str, str]) -> bool:
+        """Say whether the subject was made from exactly these components; note why if not."""
+        self._asked.setdefault(stage, set()).add(subject)
+        known = self._known(stage)
+        if subject not in known:
+            self.redone.append(Redo(stage, subject, "new"))
+            return False
+        before = known[subject][1]
+        if before == dict(components):
+            return True
+        names = sorted(n for n in {*before, *components} if before.get(n) != components.get(n))
+        why = ", ".join(
+            f"{n} is new" if n not in before
+            else f"{n} is gone" if n not in components
+            else f"{n} is redone" if components[n] == STALE
+            else f"{n} changed"
+            for n in names
+        )  # fmt: skip
+        self.redone.append(Redo(stage, subject, why))
+        return False
+
+    def keep(self, stage: str, subject: str, components: Mapping[str, str], result: object) -> str:
+        """Remember what was made; gives its key."""
+        key = key_of(components)
+        self.state.remember(stage, subject, key, components, pickle.dumps(result, protocol=5))
+        return key
+
+    def result(self, stage: str, subject: str) -> Any:
+        """Give what was made of a subject in an earlier run."""
+        return pickle.loads(self.state.result(stage, subject))
+
+    def close(self) -> None:
+        """Forget every subject that this run did not ask for, and note what went."""
+        for stage in {*self._asked, *(row[0] for row in self.state.db.execute(
+            "SELECT DISTINCT stage FROM made"))}:  # fmt: skip
+            asked = self._asked.get(stage, set())
+            gone = sorted(set(self._known(stage)) - asked)
+            self.redone += [Redo(stage, subject, "its source is gone") for subject in gone]
+            self.state.forget_all_but(stage, asked)

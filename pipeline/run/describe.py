@@ -1,0 +1,101 @@
+"""Gathers what a run tells into one document."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from typing import Any, get_args
+
+from pipeline.core.config import Config
+from pipeline.core.ledger import FileEntry, Status
+from pipeline.run.book import Book
+from pipeline.run.folders import Folders
+from pipeline.run.measure import Group
+from pipeline.run.survey import Survey
+
+
+def describe(
+    folders: Folders,
+    config: Config,
+    surveys: Sequence[Survey],
+    groups: Sequence[Group],
+    files: Sequence[FileEntry],
+    left_alone: Sequence[str],
+    book: Book,
+    release: str,
+) -> dict[str, Any]:
+    """Say what was read, fitted, refused and rejected, and whether all is well."""
+    summaries = [g.summary for g in groups if g.summary]
+    counts = Counter(f.status for f in files)
+    return {
+        "exit_code": int(any(f.violates for f in files)),
+        "raw": str(folders.raw),
+        "campaigns": [
+            {
+                "name": s.campaign.name,
+                "synthetic": s.campaign.info.synthetic,
+                "specimens": len(s.specimens),
+            }
+            for s in surveys
+            if s.campaign
+        ],
+        "left_alone": list(left_alone),
+        "files": {status: counts[status] for status in get_args(Status)},
+        "values": sum(len(s.records) for s in summaries),
+        "materials": len({g.material for g in groups}),
+        "refused": [
+            {
+                "material": r.material,
+                "key": r.key,
+                "campaign": r.campaign,
+                "specimen": r.specimen,
+                "reason": r.reason,
+            }
+            for s in summaries
+            for r in s.refusals
+        ],
+        "waiting": _waiting(files),
+        "rejected": [
+            {"path": f.path, "line": f.line, "column": f.column, "reason": _with_path(f)}
+            for f in files
+            if f.status == "rejected"
+        ],
+        "manifest": _manifest(files),
+        "excluded": [{"path": f.path, "reason": f.reason} for f in files if f.status == "excluded"],
+        "warnings": [
+            f"config/exclusions.toml names {e.path}, which is not there"
+            for e in config.exclusions.exclude
+            if e.path not in {f.path for f in files}
+        ],
+        "redone": [str(r) for r in book.redone],
+        "release": release,
+        "cards": str(folders.processed / "cards"),
+    }
+
+
+def _with_path(entry: FileEntry) -> str:
+    return entry.reason if entry.path in entry.reason else f"{entry.path}: {entry.reason}"
+
+
+def _waiting(files: Sequence[FileEntry]) -> list[dict[str, Any]]:
+    """Files of techniques that have no room yet, counted by campaign."""
+    counts = Counter(
+        f"{f.path.partition('/')[0]}: {f.reason}"
+        for f in files
+        if f.status == "refused" and f.reason.startswith("no technique")
+    )
+    return [{"reason": reason, "files": n} for reason, n in sorted(counts.items())]
+
+
+def _manifest(files: Sequence[FileEntry]) -> list[dict[str, Any]]:
+    """What departs from each campaign's manifest and is not excluded."""
+    found: dict[str, dict[str, Any]] = {}
+    for f in files:
+        if f.manifest == "ok" or f.status == "excluded":
+            continue
+        campaign, _, name = f.path.partition("/")
+        entry = found.setdefault(
+            campaign, {"campaign": campaign, "changed": [], "missing": [], "extra": []}
+        )
+        entry[f.manifest].append(name)
+    return [found[campaign] for campaign in sorted(found)]

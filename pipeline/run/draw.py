@@ -1,0 +1,101 @@
+"""Which figures a release has, and drawing them in parallel."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from pipeline.core.records import Measurement, Summary
+from pipeline.run.measure import Bench, Group
+from pipeline.techniques import TECHNIQUES
+
+
+@dataclass(frozen=True, slots=True)
+class FigureJob:
+    """One figure to draw: a group's curves, or (without a technique) a campaign's moduli.
+
+    Parameters
+    ----------
+    name : path below `figures/`, without its ending
+    """
+
+    name: str
+    title: str
+    synthetic: bool
+    technique: str | None
+    measurements: tuple[Measurement, ...]
+    summaries: tuple[Summary, ...]
+    labels: tuple[tuple[str, str], ...]
+
+    @property
+    def files(self) -> list[str]:
+        """What it publishes."""
+        return [f"figures/{self.name}.svg", f"figures/{self.name}.png"]
+
+
+def figure_jobs(
+    groups: Sequence[Group], bench: Bench
+) -> Iterator[tuple[FigureJob, dict[str, str]]]:
+    """List every figure with the components it depends on."""
+    synthetic = {s.campaign.name: s.campaign.info.synthetic for s in bench.surveys if s.campaign}
+    for g in groups:
+        if TECHNIQUES[g.technique].figure is None or (g.summary and not g.measurements):
+            continue
+        said = ", ".join(str(v) for _, v in g.conditions)
+        slug = "-".join([g.material, g.technique, *(str(v) for _, v in g.conditions)])
+        name = bench.config.name_of(g.material)
+        title = f"{name}, {g.technique}" + (f", {said}" if said else "")
+        job = FigureJob(
+            f"{g.campaign}/{slug.replace(' ', '-')}", title, synthetic[g.campaign], g.technique,
+            g.measurements, (g.summary,) if g.summary else (), (),
+        )  # fmt: skip
+        yield job, {g.subject: g.key, "about": f"{title} {synthetic[g.campaign]}"}
+    for campaign in sorted({g.campaign for g in groups}):
+        mine = [g for g in groups if g.campaign == campaign and _gives_moduli(g)]
+        if mine:
+            names = {g.material: bench.config.name_of(g.material) for g in mine}
+            job = FigureJob(
+                f"{campaign}/moduli", f"Moduli, {campaign}", synthetic[campaign], None, (),
+                tuple(g.summary for g in mine if g.summary), tuple(names.items()),
+            )  # fmt: skip
+            about = f"{synthetic[campaign]} {sorted(names.items())}"
+            yield job, {**{g.subject: g.key for g in mine}, "about": about}
+
+
+def _gives_moduli(group: Group) -> bool:
+    return any(_is_modulus(key) for key in TECHNIQUES[group.technique].yields)
+
+
+def _is_modulus(key: str) -> bool:
+    return key.endswith("_modulus")
+
+
+def draw_all(jobs: Sequence[FigureJob], folder: Path, bench: Bench) -> None:
+    """Draw figures into a folder."""
+    executor = bench.pool(len(jobs))
+    draw = partial(draw_one, folder)
+    for done, _ in enumerate(executor.map(draw, jobs) if executor else map(draw, jobs), start=1):
+        bench.progress("figures", done, len(jobs))
+
+
+def draw_one(folder: Path, job: FigureJob) -> None:
+    """Draw one figure as SVG and PNG."""
+    from pipeline.report.figures import moduli_figure, technique_figure  # matplotlib
+
+    place = folder / job.name
+    place.parent.mkdir(parents=True, exist_ok=True)
+    if job.technique is None:
+        records = [r for s in job.summaries for r in s.records if _is_modulus(r.key)]
+        refused = [r for s in job.summaries for r in s.refusals if _is_modulus(r.key)]
+        moduli_figure(
+            place.parent, place.name, job.title, records, refused, job.labels, job.synthetic
+        )
+        return
+    figure = TECHNIQUES[job.technique].figure
+    if figure is not None:
+        technique_figure(
+            place.parent, place.name, job.title,
+            lambda axes: figure(axes, job.measurements, job.summaries[0]), job.synthetic,
+        )  # fmt: skip

@@ -1,0 +1,201 @@
+"""The measuring half of a run: specimens to measurements, groups of them to summaries."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, field
+from graphlib import TopologicalSorter
+
+from pipeline.core.config import Config
+from pipeline.core.config import digest as config_digest
+from pipeline.core.instruments import Machine
+from pipeline.core.properties import REFERENCE_AGE
+from pipeline.core.quantity import Quantity
+from pipeline.core.records import Condition, Measurement, PropertyRecord, Specimen, Summary
+from pipeline.core.technique import Context, Technique
+from pipeline.formats import FORMATS
+from pipeline.run.book import STALE, Book, digest, key_of
+from pipeline.run.folders import Folders
+from pipeline.run.survey import Survey
+from pipeline.run.work import FILES_PER_TASK, Reduced, Task, reduce_all
+
+# Raise it when the driver itself may give another answer from the same file, room and settings.
+SPINE_VERSION = 1
+
+Progress = Callable[[str, int, int], None]
+Chunks = Callable[[Sequence[Sequence[Task]]], Iterable[list[Reduced]]]
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """One specimen, the key of what it was made from, and what came of it (None in a dry run)."""
+
+    specimen: Specimen
+    key: str
+    reduced: Reduced | None
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """The specimens of one material under one set of conditions in one campaign."""
+
+    campaign: str
+    material: str
+    technique: str
+    conditions: tuple[tuple[str, Condition], ...]
+    key: str
+    measurements: tuple[Measurement, ...]
+    summary: Summary | None
+
+    @property
+    def subject(self) -> str:
+        """How messages and file names call it."""
+        said = ",".join(f"{k}={v}" for k, v in self.conditions)
+        return f"{self.campaign}/{self.technique}/{self.material}" + (f"[{said}]" if said else "")
+
+
+@dataclass
+class Bench:
+    """What measuring needs at hand."""
+
+    folders: Folders
+    config: Config
+    surveys: Sequence[Survey]
+    book: Book
+    pool: Callable[[int], Executor | None]
+    progress: Progress
+    dry: bool
+    records: dict[tuple[str, str], list[PropertyRecord]] = field(default_factory=dict)
+
+
+def in_order(techniques: Mapping[str, Technique]) -> list[Technique]:
+    """Order the techniques so that each comes after those whose properties it needs."""
+    giver = {key: t.key for t in techniques.values() for key in t.yields}
+    graph = {t.key: {giver[n] for n in t.needs} for t in techniques.values()}
+    return [techniques[key] for key in TopologicalSorter(graph).static_order()]
+
+
+def measure(technique: Technique, bench: Bench) -> list[Measured]:
+    """Measure every specimen of one technique; only what is stale is read again."""
+    tasks = list(_tasks(technique, bench))
+    fresh = [bench.book.fresh("measurement", s, parts) for s, parts, _ in tasks]
+    stale = [task for (_, _, task), good in zip(tasks, fresh, strict=True) if not good]
+    made = iter(() if bench.dry else _run(technique, stale, bench))
+    measured = []
+    for (subject, parts, task), good in zip(tasks, fresh, strict=True):
+        if good:
+            reduced = None if bench.dry else bench.book.result("measurement", subject)
+            measured.append(Measured(task.specimen, key_of(parts), reduced))
+        elif bench.dry:
+            measured.append(Measured(task.specimen, STALE, None))
+        else:
+            reduced = next(made)
+            parts = {**parts, "reader": _reader(reduced.reader)}
+            key = bench.book.keep("measurement", subject, parts, reduced)
+            measured.append(Measured(task.specimen, key, reduced))
+    return measured
+
+
+def summarise(technique: Technique, measured: Sequence[Measured], bench: Bench) -> list[Group]:
+    """Summarise each group of specimens; only what is stale is computed again."""
+    groups: dict[tuple[str, str, tuple[tuple[str, Condition], ...]], list[Measured]] = {}
+    for one in measured:
+        s = one.specimen
+        conditions = tuple(sorted(s.conditions.items()))
+        groups.setdefault((s.campaign, s.material, conditions), []).append(one)
+    result = []
+    config = bench.config.methods[technique.key]
+    for (campaign, material, conditions), members in sorted(groups.items(), key=lambda g: repr(g)):
+        good = tuple(m.reduced.measurement for m in members if m.reduced and m.reduced.measurement)
+        bare = Group(campaign, material, technique.key, conditions, "", good, None)
+        parts = {
+            "technique": f"{technique.key}@{technique.version}",
+            "config": config_digest(config),
+            "spine": str(SPINE_VERSION),
+            **{f"specimen {m.specimen.id}": m.key for m in members},
+        }
+        if bench.book.fresh("summary", bare.subject, parts):
+            summary = None if bench.dry else bench.book.result("summary", bare.subject)
+            key = key_of(parts)
+        elif bench.dry:
+            summary, key = None, STALE
+        else:
+            summary = technique.summarise(good, Context(config, Machine(), {})) if good else None
+            key = bench.book.keep("summary", bare.subject, parts, summary)
+        result.append(Group(campaign, material, technique.key, conditions, key, good, summary))
+        if summary:
+            bench.records.setdefault((campaign, material), []).extend(summary.records)
+    return result
+
+
+def _tasks(technique: Technique, bench: Bench) -> Iterator[tuple[str, dict[str, str], Task]]:
+    """Every specimen of a technique with the components its measurement depends on."""
+    config = bench.config.methods[technique.key]
+    for survey in bench.surveys:
+        for specimen in survey.specimens:
+            if specimen.technique != technique.key or survey.campaign is None:
+                continue
+            entry = survey.entries[specimen.file] if specimen.file else None
+            name, machine = bench.config.instruments.machine(specimen.notes.get("instrument", ""))
+            needs = {key: _needed(key, specimen, bench.records) for key in technique.needs}
+            found = {key: q for key, q in needs.items() if q is not None}
+            info = survey.campaign.info
+            task = Task(
+                bench.folders.raw, specimen, Context(config, machine, found),
+                entry.sha256 if entry else None,
+                changed=entry is not None and entry.manifest == "changed",
+                registered=entry is None or entry.manifest != "extra",
+                ends_open=info.ends_open, stated_units=survey.stated_units,
+            )  # fmt: skip
+            subject = f"{specimen.campaign}/{specimen.technique}/{specimen.id}"
+            parts = {
+                "register row": digest(specimen),
+                "technique": f"{technique.key}@{technique.version}",
+                "config": config_digest(config),
+                "instrument": f"{name}:{config_digest(machine)}",
+                "campaign": digest((info.ends_open, info.timezone, survey.stated_units)),
+                "needs": digest(sorted(found.items())),
+                "spine": f"{SPINE_VERSION} on Python {platform.python_version()}",
+                "reader": "none",
+            }  # fmt: skip
+            if entry:
+                known = bench.book.known_component("measurement", subject, "reader")
+                parts["file"] = entry.sha256
+                parts["manifest"] = entry.manifest
+                parts["formats"] = digest(sorted(FORMATS))
+                parts["reader"] = (
+                    _reader(known.removeprefix("reader:").partition("@")[0]) if known else "unknown"
+                )
+            yield subject, parts, task
+
+
+def _reader(name: str) -> str:
+    """A reader with the version it has now."""
+    return f"{name}@{FORMATS[name].version}" if name in FORMATS else "none"
+
+
+def _needed(
+    key: str, specimen: Specimen, records: Mapping[tuple[str, str], list[PropertyRecord]]
+) -> Quantity | None:
+    """Find what a technique needs of its material: same campaign, same age, else the usual age."""
+    age = REFERENCE_AGE
+    if "age" in specimen.conditions:
+        age = str(specimen.conditions["age"])
+    place = (specimen.campaign, specimen.material)
+    found = [r for r in records.get(place, ()) if r.key == key]
+    same = [r for r in found if "age" in r.conditions and r.conditions["age"] == age] or found
+    return same[0].quantity if len(same) == 1 else None
+
+
+def _run(technique: Technique, tasks: Sequence[Task], bench: Bench) -> Iterator[Reduced]:
+    """Work through the tasks in chunks, in this process where there are few."""
+    chunks = [tasks[i : i + FILES_PER_TASK] for i in range(0, len(tasks), FILES_PER_TASK)]
+    executor = bench.pool(len(chunks))
+    done = 0
+    bench.progress(technique.key, 0, len(tasks))
+    for results in executor.map(reduce_all, chunks) if executor else map(reduce_all, chunks):
+        done += len(results)
+        bench.progress(technique.key, done, len(tasks))
+        yield from results

@@ -1,0 +1,164 @@
+"""A run from raw files to a release: survey, measure, summarise, publish."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Mapping
+from concurrent.futures import Executor, ProcessPoolExecutor
+from contextlib import ExitStack
+from dataclasses import replace
+from importlib.metadata import version
+from typing import Any
+
+from pipeline.core.campaign import find_campaigns
+from pipeline.core.config import Config, load_config
+from pipeline.core.errors import ConfigError
+from pipeline.core.ledger import FileEntry, Provenance
+from pipeline.formats import FORMATS
+from pipeline.run.book import Book, key_of
+from pipeline.run.describe import describe
+from pipeline.run.folders import Folders, Stat, locate
+from pipeline.run.measure import Bench, Group, Measured, Progress, in_order, measure, summarise
+from pipeline.run.publish import publish
+from pipeline.run.release import Release, listing
+from pipeline.run.state import State
+from pipeline.run.survey import Survey, survey
+from pipeline.techniques import TECHNIQUES
+
+
+def hash_inputs(
+    seen: Mapping[str, Stat], folders: Folders, state: State, verify: bool
+) -> dict[str, str]:
+    """Hash every input whose size or time of change is new; all of them to verify."""
+    known = {} if verify else state.inputs()
+    return {
+        path: known[path][1]
+        if path in known and known[path][0] == stat
+        else hashlib.sha256(locate(path, folders).read_bytes()).hexdigest()
+        for path, stat in seen.items()
+    }
+
+
+def process(
+    folders: Folders,
+    state: State,
+    seen: Mapping[str, Stat],
+    *,
+    workers: int,
+    progress: Progress,
+    verify: bool = False,
+    dry: bool = False,
+) -> dict[str, Any]:
+    """Bring `processed/` up to date with what was seen and say what came of it.
+
+    Parameters
+    ----------
+    seen : every input, as `look` lists it
+    workers : processes at most; 1 works in this one
+    verify : hash every input again, whatever its time of change
+    dry : only find out what is stale and why; nothing is read, made or published
+
+    Raises
+    ------
+    ConfigError : the configuration does not hold
+    """
+    hashes = hash_inputs(seen, folders, state, verify)
+    config = load_config(folders.config, {t.key: t.config for t in TECHNIQUES.values()})
+    surveys, left_alone = look_at_raw(folders, seen, hashes, config)
+    book = Book(state)
+    with ExitStack() as stack:
+        pool = _pool(stack, workers)
+        bench = Bench(folders, config, surveys, book, pool, progress, dry)
+        groups: list[Group] = []
+        measured: list[Measured] = []
+        for technique in in_order(TECHNIQUES):
+            mine = measure(technique, bench)
+            measured += mine
+            groups += summarise(technique, mine, bench)
+        files = _account(surveys, measured)
+        provenance = _provenance(config, seen, hashes)
+        if dry:
+            publish(groups, files, provenance, bench, None)
+            book.close()
+            return {"redone": [str(r) for r in book.redone]}
+        state.db.commit()  # measurements hold whatever becomes of the release
+        release = Release(folders.processed, state.read_note("published"))
+        publish(groups, files, provenance, bench, release)
+        book.close()
+        name = key_of({s: k for s, (k, _) in _all_made(state).items()})[:12]
+        place = release.publish(name)
+    document = describe(folders, config, surveys, groups, files, left_alone, book, place.name)
+    state.remember_inputs(seen, hashes)
+    state.note("published", listing(place))
+    return document
+
+
+def look_at_raw(
+    folders: Folders, seen: Mapping[str, Stat], hashes: Mapping[str, str], config: Config
+) -> tuple[list[Survey], list[str]]:
+    """Survey every campaign; name what is no campaign."""
+    if not folders.raw.is_dir():
+        raise ConfigError(f"no folder {folders.raw}; give one with --raw")
+    found, left_alone = find_campaigns(folders.raw)
+    surveys = []
+    for folder in found:
+        prefix = f"raw/{folder.name}/"
+        mine = [path for path in seen if path.startswith(prefix)]
+        surveys.append(
+            survey(
+                folder,
+                {path[4:]: seen[path].size for path in mine},
+                {path[4:]: hashes[path] for path in mine},
+                TECHNIQUES,
+                config,
+            )
+        )
+    return surveys, left_alone
+
+
+def _pool(stack: ExitStack, workers: int) -> Callable[[int], Executor | None]:
+    """Give the one executor of the run, started when the first work worth it comes."""
+    started: list[Executor] = []
+
+    def get(chunks: int) -> Executor | None:
+        if workers < 2 or chunks < 2:
+            return None
+        if not started:
+            started.append(stack.enter_context(ProcessPoolExecutor(workers)))
+        return started[0]
+
+    return get
+
+
+def _account(surveys: list[Survey], measured: list[Measured]) -> list[FileEntry]:
+    """Close the account of files with what became of each recording."""
+    entries = {path: e for survey in surveys for path, e in survey.entries.items()}
+    for one in measured:
+        path, reduced = one.specimen.file, one.reduced
+        if path is None or reduced is None:
+            continue
+        if reduced.error is not None:
+            error = reduced.error
+            entries[path] = replace(
+                entries[path], status="rejected", reason=str(error),
+                line=error.line, column=error.column,
+            )  # fmt: skip
+        elif reduced.measurement is not None and not reduced.measurement.values:
+            why = "; ".join(f"{r.key}: {r.reason}" for r in reduced.measurement.refusals)
+            entries[path] = replace(entries[path], status="refused", reason=why)
+    return [entries[path] for path in sorted(entries)]
+
+
+def _provenance(config: Config, seen: Mapping[str, Stat], hashes: Mapping[str, str]) -> Provenance:
+    code = {path: hashes[path] for path in seen if path.startswith("code/")}
+    stages = {f"reader:{f.name}": f.version for f in FORMATS.values()}
+    stages |= {f"technique:{t.key}": t.version for t in TECHNIQUES.values()}
+    return Provenance(
+        version("deamat"), key_of(code), tuple(sorted(stages.items())),
+        tuple(sorted(config.files.items())),
+    )  # fmt: skip
+
+
+def _all_made(state: State) -> dict[str, tuple[str, dict[str, str]]]:
+    stages = ("card", "figure", "database", "curves", "audit")
+    return {f"{s}:{subject}": made for s in stages for subject, made in state.made(s).items()}

@@ -1,0 +1,130 @@
+"""The publishing half of a run: cards, database, curves, figures and audit into one release."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from functools import partial
+from pathlib import Path
+
+from pipeline.core.ledger import FileEntry, Provenance
+from pipeline.materials.card import MaterialCard
+from pipeline.materials.curves import write_curves
+from pipeline.materials.database import write_database
+from pipeline.run.book import STALE, Redo, digest, key_of
+from pipeline.run.draw import FigureJob, draw_all, figure_jobs
+from pipeline.run.measure import Bench, Group
+from pipeline.run.release import Release
+
+# Raise it when the same records would give another file.
+OUTPUT_VERSION = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Press:
+    """Makes one output at a time, or takes it over from the release before."""
+
+    bench: Bench
+    release: Release | None  # None in a dry run
+
+    def make(
+        self,
+        stage: str,
+        subject: str,
+        parts: Mapping[str, str],
+        names: Sequence[str],
+        write: Callable[[Release], None],
+    ) -> str:
+        """Make the files `names` from `parts` unless they are there already; gives their key."""
+        parts = {**parts, "output": str(OUTPUT_VERSION)}
+        fresh = self.bench.book.fresh(stage, subject, parts)
+        if self.release is None:
+            return key_of(parts) if fresh else STALE
+        if fresh:
+            if self.release.keep(*names):
+                return key_of(parts)
+            self.bench.book.redone.append(Redo(stage, subject, "its output is not as it was"))
+        write(self.release)
+        return self.bench.book.keep(stage, subject, parts, None)
+
+
+def publish(
+    groups: Sequence[Group],
+    files: Sequence[FileEntry],
+    provenance: Provenance,
+    bench: Bench,
+    release: Release | None,
+) -> None:
+    """Write everything that is published; what did not change is kept from the release before."""
+    press = Press(bench, release)
+    by_material: dict[str, list[Group]] = {}
+    for group in groups:
+        by_material.setdefault(group.material, []).append(group)
+    cards: list[MaterialCard] = []
+    keys: dict[str, str] = {}
+    for material, mine in sorted(by_material.items()):
+        card = _card(material, mine, bench)
+        cards.append(card)
+        keys[f"card {material}"] = press.make(
+            "card", material, _card_parts(card, mine), [f"cards/{material}.json"], _writes(card)
+        )
+        bench.progress("cards", len(cards), len(by_material))
+    press.make(
+        "database", "materials.sqlite",
+        {**keys, "files": digest(tuple(files)), "provenance": digest(provenance)},
+        ["materials.sqlite"],
+        lambda r: write_database(r.path("materials.sqlite"), cards, files, provenance),
+    )  # fmt: skip
+    press.make(
+        "curves", "curves.h5", {g.subject: g.key for g in groups}, ["curves.h5"],
+        lambda r: write_curves(r.path("curves.h5"), [m for g in groups for m in g.measurements]),
+    )  # fmt: skip
+    press.make(
+        "audit", "files.json", {"files": digest(tuple(files))}, ["audit/files.json"],
+        lambda r: _write(r.path("audit/files.json"), [asdict(f) for f in files]),
+    )  # fmt: skip
+    _figures(groups, press)
+
+
+def _card(material: str, groups: Sequence[Group], bench: Bench) -> MaterialCard:
+    infos = {s.campaign.name: s.campaign.info for s in bench.surveys if s.campaign}
+    campaigns = sorted({g.campaign for g in groups})
+    summaries = [g.summary for g in groups if g.summary]
+    return MaterialCard(
+        material=material,
+        name=bench.config.name_of(material),
+        synthetic=any(infos[c].synthetic for c in campaigns),
+        campaigns=tuple((c, infos[c].title, infos[c].licence) for c in campaigns),
+        records=tuple(r for s in summaries for r in s.records),
+        laws=tuple(law for s in summaries for law in s.laws),
+        refusals=tuple(r for s in summaries for r in s.refusals),
+    )
+
+
+def _card_parts(card: MaterialCard, groups: Sequence[Group]) -> dict[str, str]:
+    about = digest((card.name, card.synthetic, card.campaigns))
+    return {**{g.subject: g.key for g in groups}, "about": about}
+
+
+def _writes(card: MaterialCard) -> Callable[[Release], None]:
+    return lambda r: _write(r.path(f"cards/{card.material}.json"), card.to_document())
+
+
+def _write(path: Path, document: object) -> None:
+    path.write_text(json.dumps(document, indent=1, ensure_ascii=False) + "\n", "utf-8")
+
+
+def _figures(groups: Sequence[Group], press: Press) -> None:
+    """Draw the figures that are stale, in parallel where there are many."""
+    stale: list[FigureJob] = []
+    for job, parts in figure_jobs(groups, press.bench):
+        press.make("figure", job.name, parts, job.files, partial(_later, stale, job))
+    if press.release is not None and stale:
+        draw_all(stale, press.release.path("figures"), press.bench)
+
+
+def _later(stale: list[FigureJob], job: FigureJob, release: Release) -> None:
+    """Put a figure on the list: they are drawn together."""
+    del release
+    stale.append(job)

@@ -1,0 +1,71 @@
+"""What a run tells: a document for programs, a page of text for people. Standard library only."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+_LONG = 12  # more lines than this of one kind are counted, the rest is in `deamat audit`
+
+
+def text(document: Mapping[str, Any]) -> str:
+    """Write the page that a lab engineer reads at the end of a run."""
+    files = document["files"]
+    lines = [
+        (
+            f"raw        {document['raw']}: {len(document['campaigns'])} campaigns, "
+            f"{sum(files.values())} files"
+        ),
+        "files      " + ", ".join(f"{n} {status}" for status, n in files.items()),
+    ]
+    if document["left_alone"]:
+        lines.append(f"left alone {', '.join(document['left_alone'])} (no campaign.toml)")
+    lines.append(
+        f"values     {document['values']} of {document['materials']} materials, "
+        f"{len(document['refused'])} refused"
+    )
+    lines += _some("refused", [_refusal(r) for r in document["refused"]])
+    lines += _some("no reader", [f"{w['reason']}: {w['files']} files" for w in document["waiting"]])
+    lines += _some("REJECTED", [r["reason"] for r in document["rejected"]])
+    lines += _some("MANIFEST", [_violation(m) for m in document["manifest"]])
+    lines += _some("excluded", [f"{e['path']}: {e['reason']}" for e in document["excluded"]])
+    lines += _some("warning", document["warnings"])
+    synthetic = [c["name"] for c in document["campaigns"] if c["synthetic"]]
+    if synthetic:
+        lines.append(f"SYNTHETIC  {', '.join(synthetic)}: simulated files, not measurements")
+    lines.append(f"cards      {document['cards']}, release {document['release']}")
+    return "\n".join(lines)
+
+
+def redone(reasons: Iterable[str]) -> str:
+    """Count what was redone, stage by stage."""
+    counts = Counter(reason.partition(" ")[0] for reason in reasons)
+    if not counts:
+        return "redone     nothing"
+    return "redone     " + ", ".join(f"{n} {stage}" for stage, n in counts.items())
+
+
+def _some(label: str, said: list[str]) -> list[str]:
+    shown = [f"{label:<11}{line}" for line in said[:_LONG]]
+    if len(said) > _LONG:
+        shown.append(f"{'':<11}... and {len(said) - _LONG} more: deamat audit")
+    return shown
+
+
+def _refusal(refusal: Mapping[str, Any]) -> str:
+    who = refusal["specimen"] or refusal["campaign"]
+    return f"{refusal['material']} {refusal['key']} ({who}): {refusal['reason']}"
+
+
+def _violation(violation: Mapping[str, Any]) -> str:
+    said = [
+        f"{len(violation[kind])} {kind} ({', '.join(violation[kind][:3])}"
+        + (", ...)" if len(violation[kind]) > 3 else ")")
+        for kind in ("changed", "missing", "extra")
+        if violation[kind]
+    ]
+    return (
+        f"{violation['campaign']}: {'; '.join(said)}; "
+        f"look at `deamat register {violation['campaign']}`"
+    )

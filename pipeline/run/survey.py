@@ -1,0 +1,250 @@
+"""Surveys `raw/`: which campaigns, which specimens, and a first account of every file."""
+
+from __future__ import annotations
+
+import csv
+import difflib
+import io
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from pipeline.core.campaign import CAMPAIGN_FILE, MANIFEST_FILE, Campaign, load_campaign
+from pipeline.core.config import Config
+from pipeline.core.errors import RawFileError
+from pipeline.core.ledger import FileEntry, Role
+from pipeline.core.manifest import Difference, compare, parse_manifest
+from pipeline.core.records import Specimen
+from pipeline.core.register import REGISTER_FILE, REGISTER_FILES, read_register
+from pipeline.core.technique import Technique
+from pipeline.formats.documentation import stated_units
+
+_DOCUMENTS = (".md", ".pdf", ".rst")
+
+
+@dataclass
+class Survey:
+    """What a look at one campaign gave.
+
+    Parameters
+    ----------
+    specimens : rows whose file is there and not excluded, in register order
+    entries : the account so far; a recording stays `used` until reading it says otherwise
+    stated_units : label to unit, as the campaign's own documents say
+    """
+
+    campaign: Campaign | None
+    specimens: list[Specimen] = field(default_factory=list)
+    entries: dict[str, FileEntry] = field(default_factory=dict)
+    stated_units: Mapping[str, str] = field(default_factory=dict)
+
+
+def survey(
+    folder: Path,
+    sizes: Mapping[str, int],
+    hashes: Mapping[str, str],
+    techniques: Mapping[str, Technique],
+    config: Config,
+) -> Survey:
+    """Account for every file of one campaign folder.
+
+    Parameters
+    ----------
+    sizes, hashes : path relative to `raw/` to size and sha256, of this campaign's files
+    """
+    result = Survey(None)
+    difference, broken = _manifest(folder, hashes)
+    for path in sizes:
+        result.entries[path] = _entry(path, sizes[path], hashes[path], difference, techniques)
+    if broken:
+        _blame(result, broken)
+    for name in difference.missing:
+        path = f"{folder.name}/{name}"
+        if path not in result.entries:
+            result.entries[path] = FileEntry(
+                path, "", 0, "missing", "rejected", "missing", "in the manifest, but not there"
+            )
+    _exclude(result, config)
+    try:
+        result.campaign = load_campaign(folder)
+    except RawFileError as error:
+        _blame(result, error)
+        for path, entry in result.entries.items():
+            if entry.role not in ("campaign", "missing"):
+                why = f"{folder.name}/{CAMPAIGN_FILE} cannot be read"
+                result.entries[path] = replace(entry, status="rejected", reason=why)
+        return result
+    documents = [p for p, e in result.entries.items() if e.role == "document"]
+    texts = [(folder.parent / p).read_text("utf-8", "replace") for p in documents if _text(p)]
+    result.stated_units = stated_units("\n".join(texts))
+    for path, entry in sorted(result.entries.items()):
+        if entry.role == "register" and entry.status != "excluded":
+            _register(path, folder, result, techniques, config)
+    _unnamed(result, folder)
+    return result
+
+
+def _text(path: str) -> bool:
+    return path.lower().endswith((".txt", ".md", ".rst"))
+
+
+def _entry(
+    path: str, size: int, sha256: str, difference: Difference, techniques: Mapping[str, Technique]
+) -> FileEntry:
+    name = path.partition("/")[2]
+    role = _role(path, techniques)
+    if name in difference.changed:
+        reason = "its bytes are not the registered ones"
+        return FileEntry(path, sha256, size, role, "used", "changed", reason)
+    if name in difference.extra:
+        return FileEntry(path, sha256, size, role, "used", "extra", "not in the manifest")
+    return FileEntry(path, sha256, size, role, "used")
+
+
+def _role(path: str, techniques: Mapping[str, Technique]) -> Role:
+    parts = path.split("/")
+    if len(parts) == 2:
+        if parts[1] == CAMPAIGN_FILE:
+            return "campaign"
+        return "manifest" if parts[1] == MANIFEST_FILE else "document"
+    if len(parts) == 3 and parts[2] in REGISTER_FILES:
+        return "register"
+    if parts[-1].lower().endswith(_DOCUMENTS) or parts[1] not in techniques:
+        return "document"
+    return "unnamed"
+
+
+def _manifest(folder: Path, hashes: Mapping[str, str]) -> tuple[Difference, RawFileError | None]:
+    path = f"{folder.name}/{MANIFEST_FILE}"
+    found = {p.partition("/")[2]: sha for p, sha in hashes.items() if p != path}
+    if path not in hashes:
+        return compare({}, found), None
+    try:
+        text = (folder / MANIFEST_FILE).read_bytes().decode("utf-8")
+        return compare(parse_manifest(text, path), found), None
+    except UnicodeDecodeError as error:
+        return compare({}, found), RawFileError(path, f"not UTF-8: {error}")
+    except RawFileError as error:
+        return compare({}, found), error
+
+
+def _exclude(result: Survey, config: Config) -> None:
+    for exclusion in config.exclusions.exclude:
+        if exclusion.path in result.entries:
+            entry = result.entries[exclusion.path]
+            result.entries[exclusion.path] = replace(
+                entry, status="excluded", reason=exclusion.reason
+            )
+
+
+def _blame(result: Survey, error: RawFileError) -> None:
+    """Mark a file as rejected, with the place and reason of an error."""
+    entry = result.entries[error.path]
+    result.entries[error.path] = replace(
+        entry, status="rejected", reason=str(error), line=error.line, column=error.column
+    )
+
+
+def _register(
+    path: str,
+    folder: Path,
+    result: Survey,
+    techniques: Mapping[str, Technique],
+    config: Config,
+) -> None:
+    name = path.split("/")[1]
+    data = (folder.parent / path).read_bytes()
+    if name not in techniques:
+        near = difflib.get_close_matches(name, techniques, n=1)
+        hint = f"; did you mean {near[0]!r}?" if near else ""
+        reason = f"no technique is called {name!r} yet{hint}"
+        for file in [path, *_files_named(data, path)]:
+            if file in result.entries and result.entries[file].status != "excluded":
+                role: Role = "register" if file == path else "recording"
+                result.entries[file] = replace(
+                    result.entries[file], role=role, status="refused", reason=reason
+                )
+        return
+    try:
+        register = read_register(
+            data, path, folder.name, name, techniques[name].required, config.instruments.gauges
+        )
+    except RawFileError as error:
+        _blame(result, error)
+        for file in _files_named(data, path):
+            if file in result.entries:
+                result.entries[file] = replace(
+                    result.entries[file], role="recording", status="rejected",
+                    reason=f"its register cannot be read: {error}",
+                )  # fmt: skip
+        return
+    owners: dict[str, Specimen] = {}
+    for specimen in register.specimens:
+        if _claim(specimen, result, owners):
+            result.specimens.append(specimen)
+    for named, slip in register.errors:
+        _blame_row(named, slip, result)
+
+
+def _claim(specimen: Specimen, result: Survey, owners: dict[str, Specimen]) -> bool:
+    """Give a row its file, once; say whether the row can be measured."""
+    path = specimen.file
+    if path is None:
+        return True
+    place = f"{specimen.register}, line {specimen.line}"
+    if path not in result.entries:
+        result.entries[path] = FileEntry(
+            path, "", 0, "missing", "rejected", reason=f"named in {place}, but not there"
+        )
+        return False
+    entry = result.entries[path]
+    if entry.role == "missing":
+        return False
+    if path in owners:
+        first = owners[path]
+        _blame_row(None, RawFileError(
+            specimen.register, f"its file is that of {first.id} in line {first.line} already",
+            specimen.line, value=specimen.id,
+        ), result)  # fmt: skip
+        return False
+    owners[path] = specimen
+    result.entries[path] = replace(entry, role="recording")
+    return entry.status != "excluded"
+
+
+def _blame_row(named: str | None, error: RawFileError, result: Survey) -> None:
+    """A bad row: its data file is rejected, or the register itself where it names none."""
+    if named in result.entries and named is not None:
+        entry = result.entries[named]
+        if entry.status != "excluded":
+            result.entries[named] = replace(
+                entry, role="recording", status="rejected", reason=str(error)
+            )
+        return
+    _blame(result, error)
+
+
+def _files_named(data: bytes, path: str) -> list[str]:
+    """The files that a register names, read without understanding the rest of it."""
+    text = data.decode("utf-8-sig", "replace")
+    rows = list(csv.reader(io.StringIO(text, newline="")))
+    if not rows or "file" not in [h.strip() for h in rows[0]]:
+        return []
+    at = [h.strip() for h in rows[0]].index("file")
+    folder = path.rpartition("/")[0]
+    return [f"{folder}/{row[at].strip()}" for row in rows[1:] if len(row) > at and row[at].strip()]
+
+
+def _unnamed(result: Survey, folder: Path) -> None:
+    """A data file that no register names is rejected: nobody can say what it belongs to."""
+    for path, entry in result.entries.items():
+        if entry.role != "unnamed" or entry.status == "excluded":
+            continue
+        technique = path.split("/")[1]
+        register = f"{folder.name}/{technique}/{REGISTER_FILE}"
+        reason = (
+            f"{register} does not name it; add a row or an exclusion"
+            if register in result.entries
+            else f"there is no register {register}"
+        )
+        result.entries[path] = replace(entry, status="rejected", reason=reason)

@@ -1,0 +1,96 @@
+"""What a worker does: one specimen's bytes to a Measurement, or to the reason why not."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from pipeline.core.errors import RawFileError
+from pipeline.core.records import Flag, Measurement, Recording, Specimen
+from pipeline.core.technique import Context
+from pipeline.formats.detect import by_name, detect
+from pipeline.formats.documentation import contradictions
+from pipeline.formats.rawfile import RawFile
+from pipeline.techniques import TECHNIQUES
+
+FILES_PER_TASK = 25
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """One specimen to be measured.
+
+    Parameters
+    ----------
+    sha256 : of its file as planned; a file that changed since is an error, not a surprise
+    changed : its bytes are not the registered ones
+    """
+
+    raw: Path
+    specimen: Specimen
+    context: Context
+    sha256: str | None
+    changed: bool
+    registered: bool
+    ends_open: bool
+    stated_units: Mapping[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class Reduced:
+    """What came of a task: a measurement or an error, and the reader that was used."""
+
+    measurement: Measurement | None
+    error: RawFileError | None
+    reader: str
+
+
+def reduce_all(tasks: Sequence[Task]) -> list[Reduced]:
+    """Work through a chunk of tasks."""
+    return [reduce_one(task) for task in tasks]
+
+
+def reduce_one(task: Task) -> Reduced:
+    """Read and reduce one specimen; a bad file is an answer here, not an exception."""
+    technique = TECHNIQUES[task.specimen.technique]
+    reader = "none"
+    try:
+        recording = None
+        if task.specimen.file is not None:
+            recording = _read(task, task.specimen.file)
+            reader = recording.source.reader
+        measurement = technique.reduce(task.specimen, recording, task.context)
+    except RawFileError as error:
+        return Reduced(None, error, reader)
+    return Reduced(_flagged(measurement, recording, task), None, reader)
+
+
+def _read(task: Task, path: str) -> Recording:
+    file = RawFile(path, (task.raw / path).read_bytes(), task.ends_open)
+    if file.sha256 != task.sha256:
+        raise RawFileError(path, "the file changed while it was being read", mend="run again")
+    named = task.specimen.format
+    form = by_name(named, task.specimen.register, task.specimen.line) if named else detect(file)
+    recording = form.read(file)
+    if task.changed:
+        campaign = task.specimen.campaign
+        raise RawFileError(
+            path,
+            "its bytes are not the registered ones",
+            mend=f"restore it, or look at `deamat register {campaign}` and accept the change",
+        )
+    return recording
+
+
+def _flagged(measurement: Measurement, recording: Recording | None, task: Task) -> Measurement:
+    """Hand what was noticed about the file on to every value that rests on it."""
+    if recording is None:
+        return measurement
+    flags = [*recording.flags, *contradictions(task.stated_units, recording.column_units)]
+    if not task.registered:
+        flags.append(Flag("unregistered", "the file is not in its campaign's manifest"))
+    values = tuple(
+        replace(v, flags=tuple(dict.fromkeys([*v.flags, *flags]))) for v in measurement.values
+    )
+    return replace(measurement, values=values)
