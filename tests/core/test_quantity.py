@@ -1,0 +1,32 @@
+"""Quantities: two kinds of uncertainty, and values that must not exist."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from pipeline.core.errors import OutOfRange
+from pipeline.core.quantity import Contribution, Quantity
+
+
+def test_budget_adds_in_quadrature_and_keeps_the_shared_part_apart() -> None:
+    budget = [
+        Contribution("a", 3.0, False),
+        Contribution("b", 4.0, False),
+        Contribution("c", 12.0, True),
+    ]
+    q = Quantity.from_budget(1.0, "Pa", budget)
+    assert (q.u_independent, q.u_shared, q.standard_uncertainty) == (5.0, 12.0, 13.0)
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf])
+def test_a_value_must_be_finite(value: float) -> None:
+    with pytest.raises(OutOfRange, match="must be finite"):
+        Quantity(value, "Pa")
+
+
+@pytest.mark.parametrize("u", [-1.0, math.nan])
+def test_an_uncertainty_is_finite_and_not_negative(u: float) -> None:
+    with pytest.raises(OutOfRange, match="u_shared must be finite and not negative"):
+        Quantity(1.0, "Pa", 0.0, u)

@@ -1,0 +1,92 @@
+"""Registers: units in the header, uncertainty twins, and every slip by line and column."""
+
+from __future__ import annotations
+
+import pytest
+
+from pipeline.core.errors import RawFileError
+from pipeline.core.instruments import Gauge
+from pipeline.core.register import Register, read_register
+
+_PATH = "demo/compression/specimens.csv"
+_GOOD = "specimen,material,file,diameter_mm,u_diameter_mm,height_mm,age,cup\na,m,f/a.csv,28,0.02,12,after cure,150 ml\n"
+
+
+def _read(text: str) -> Register:
+    gauges = {"height": Gauge(u_reading_m=3e-5, u_calibration_m=4e-5)}
+    return read_register(
+        text.encode(), _PATH, "demo", "compression", ("diameter_m", "height_m"), gauges
+    )
+
+
+def test_a_good_row() -> None:
+    (specimen,) = _read(_GOOD).specimens
+    assert specimen.file == "demo/compression/f/a.csv"
+    assert specimen.numbers["diameter_m"].value == pytest.approx(0.028)
+    assert specimen.numbers["diameter_m"].u_independent == pytest.approx(2e-5)
+    assert specimen.numbers["height_m"].u_independent == 3e-5
+    assert specimen.numbers["height_m"].u_shared == 4e-5
+    assert specimen.conditions == {"age": "after cure"}
+    assert specimen.notes == {"cup": "150 ml"}
+    assert specimen.line == 2
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            ",28,",
+            ",28.0x,",
+            "demo/compression/specimens.csv, line 2, column 4: not a number (found '28.0x'); "
+            "write it with a decimal point",
+        ),
+        (",28,", ",,", "demo/compression/specimens.csv, line 2, column 4: must not be empty (found '')"),
+        (",28,", ",-28,", "demo/compression/specimens.csv, line 2, column 4: must be positive (found '-28')"),
+        (
+            ",150 ml",
+            "",
+            "demo/compression/specimens.csv, line 2, column 7: 7 fields where the header has 8",
+        ),
+        (
+            "f/a.csv",
+            "../a.csv",
+            "demo/compression/specimens.csv, line 2, column 3: a file is named relative to its "
+            "register's folder (found '../a.csv')",
+        ),
+    ],
+)  # fmt: skip
+def test_a_bad_row_is_named_and_the_rest_is_read(old: str, new: str, message: str) -> None:
+    good = "b,m,f/b.csv,28,0.02,12,after cure,150 ml\n"
+    register = _read(_GOOD.replace(old, new) + good)
+    assert [s.id for s in register.specimens] == ["b"]
+    assert [str(error) for _, error in register.errors] == [message]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("height_mm", "height_furlong", "line 1, column 6: a quantity without a known unit"),
+        ("u_diameter_mm", "u_width_mm", "line 1, column 5: an uncertainty without its column"),
+        ("height_mm", "height", "line 1, column 6: a quantity without a known unit"),
+        ("material", "stuff", "line 1: no column 'material'"),
+        ("cup", "age", "line 1, column 7: a column stands twice"),
+        ("height_mm", "diameter_um", "line 1, column 6: diameter_m is given twice"),
+        ("height_mm", "colour", "line 1: no column for height; add height_<unit>"),
+    ],
+)
+def test_a_header_that_cannot_be_used(old: str, new: str, message: str) -> None:
+    with pytest.raises(RawFileError) as caught:
+        _read(_GOOD.replace(old, new, 1))
+    assert message in str(caught.value)
+
+
+def test_a_specimen_stands_once() -> None:
+    register = _read(_GOOD + _GOOD.splitlines()[1] + "\n")
+    assert "the specimen stands in line 2 already" in str(register.errors[0][1])
+
+
+def test_multi_word_units_and_temperatures() -> None:
+    text = "specimen,material,diameter_mm,height_mm,speed_mm_per_min,temperature_C\na,m,1,1,12,22\n"
+    (specimen,) = _read(text).specimens
+    assert specimen.numbers["speed_m_per_s"].value == pytest.approx(2e-4)
+    assert specimen.numbers["temperature_K"].value == pytest.approx(295.15)
