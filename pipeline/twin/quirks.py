@@ -1,0 +1,38 @@
+"""Faults that real exports have, to be built into a simulated campaign on purpose.
+
+A quirk turns the files of a campaign (path to content) into other files; the manifest is made
+afterwards and agrees with them, as it does when a lab hashes what its instrument wrote.
+"""
+
+from __future__ import annotations
+
+import codecs
+from collections.abc import Callable, Mapping
+
+from pipeline.core.errors import ConfigError
+
+Quirk = Callable[[Mapping[str, bytes]], Mapping[str, bytes]]
+
+
+def cut_short(path: str) -> Quirk:
+    """End a file inside its last number, as an interrupted copy does."""
+    return _altered(path, lambda data: data.rstrip(b'\r\n"')[:-1])
+
+
+def open_ended(path: str) -> Quirk:
+    """Leave the last line end out, as some exporters do."""
+    return _altered(path, lambda data: data.rstrip(b"\r\n"))
+
+
+def as_utf16(path: str) -> Quirk:
+    """Write the same text in UTF-16 with its byte order mark, as some Windows programs do."""
+    return _altered(path, lambda data: codecs.BOM_UTF16_LE + data.decode().encode("utf-16-le"))
+
+
+def _altered(path: str, change: Callable[[bytes], bytes]) -> Quirk:
+    def quirk(contents: Mapping[str, bytes]) -> Mapping[str, bytes]:
+        if path not in contents:
+            raise ConfigError(f"a quirk names {path!r}, which the campaign does not hold")
+        return {**contents, path: change(contents[path])}
+
+    return quirk
