@@ -1,0 +1,84 @@
+"""Promises of the mean over specimens: intervals that cover, shared errors that stay."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from pipeline.core.errors import FitRefused
+from pipeline.estimators.mean import coverage_factor, mean_with_shared, outliers
+
+
+@pytest.mark.parametrize(
+    ("dof", "quantile"),  # tables of Student's t, two-sided 95 %
+    [(1, 12.7062047), (2, 4.30265273), (9, 2.26215716), (30, 2.04227246), (math.inf, 1.95996398)],
+)
+def test_coverage_factor_is_students(dof: float, quantile: float) -> None:
+    assert coverage_factor(dof) == pytest.approx(quantile, rel=3e-6)
+
+
+def test_without_a_shared_error_it_is_students_interval() -> None:
+    mean = mean_with_shared([10.0, 11.0, 12.0, 15.0], u_own=9.0, u_shared=0.0)
+    assert mean.value == 12.0
+    assert mean.sd == pytest.approx(math.sqrt(14.0 / 3.0))
+    assert mean.u_independent == pytest.approx(math.sqrt(14.0 / 12.0))
+    assert mean.degrees_of_freedom == 3.0
+    half = 3.182446305 * math.sqrt(14.0 / 12.0)
+    assert mean.ci95 == pytest.approx((12.0 - half, 12.0 + half))
+
+
+@pytest.mark.parametrize("n", [3, 5, 10])
+@pytest.mark.parametrize("shared", [0.0, 0.3, 1.0, 3.0])
+def test_interval_covers_with_and_without_a_shared_error(n: int, shared: float) -> None:
+    rng = np.random.default_rng(100 * n + int(10 * shared))
+    repeats = 4000
+    u_shared = shared / math.sqrt(n)  # in units of the standard error of the mean
+    values = rng.normal(50.0, 1.0, (repeats, n)) + rng.normal(0.0, u_shared, (repeats, 1))
+    hits = 0
+    for row in values.tolist():
+        low, high = mean_with_shared(row, 0.0, u_shared).ci95
+        hits += low < 50.0 < high
+    assert 0.935 <= hits / repeats <= 0.975
+
+
+def test_shared_error_never_averages_away() -> None:
+    rng = np.random.default_rng(1)
+    mean = mean_with_shared(rng.normal(5.0, 1.0, 10_000).tolist(), 0.0, 0.2)
+    assert mean.u_shared == 0.2
+    assert (mean.ci95[1] - mean.ci95[0]) / 2.0 == pytest.approx(1.96 * 0.2, rel=0.01)
+
+
+def test_order_does_not_show_in_the_last_digit() -> None:
+    values = [0.1, 1e8, 0.3, -1e8, 7.7]
+    results = {mean_with_shared(list(p), 0.0, 0.1) for p in itertools.permutations(values)}
+    assert len(results) == 1
+
+
+def test_one_value_keeps_its_own_uncertainty_and_no_scatter() -> None:
+    mean = mean_with_shared([7.0], u_own=0.3, u_shared=0.4)
+    assert mean.sd is None
+    assert (mean.u_independent, mean.u_shared) == (0.3, 0.4)
+    assert mean.ci95 == pytest.approx((7.0 - 1.959964 * 0.5, 7.0 + 1.959964 * 0.5), rel=1e-6)
+
+
+def test_identical_values_leave_the_shared_error() -> None:
+    mean = mean_with_shared([2.0, 2.0, 2.0], 0.0, 0.5)
+    assert (mean.sd, mean.u_independent, mean.degrees_of_freedom) == (0.0, 0.0, math.inf)
+    assert mean.ci95 == pytest.approx((2.0 - 0.979982, 2.0 + 0.979982), rel=1e-5)
+
+
+def test_no_values_are_refused() -> None:
+    with pytest.raises(FitRefused, match=r"^a mean needs at least one value$"):
+        mean_with_shared([], 0.0, 0.0)
+
+
+def test_outliers_are_named_from_five_values_on() -> None:
+    assert outliers([10.0, 10.2, 9.9, 10.1, 20.0]) == (4,)
+    assert outliers([10.0, 10.2, 9.9, 10.1, 10.3]) == ()
+    assert outliers([10.0, 10.2, 9.9, 20.0]) == ()
+    # 0.6745 * 5.19 / 1 stays within 3.5, 0.6745 * 5.2 / 1 does not
+    assert outliers([-1.0, 0.0, 1.0, -1.0, 5.18]) == ()
+    assert outliers([-1.0, 0.0, 1.0, -1.0, 5.2]) == (4,)
