@@ -1,0 +1,209 @@
+"""From a machine's columns and the register's geometry to nominal stress and strain."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.core.errors import FitRefused
+from pipeline.core.instruments import Machine
+from pipeline.core.quantity import Contribution, Quantity
+from pipeline.core.records import Flag, FloatArray, Recording
+
+IndexArray = NDArray[np.intp]
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A cross-section before the test.
+
+    Parameters
+    ----------
+    area_m2 : its area `[m^2]`
+    budget : relative standard uncertainties of the area `[1]`
+    """
+
+    area_m2: float
+    budget: tuple[Contribution, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class StressStrain:
+    """A nominal stress-strain curve, signed so that loading is positive.
+
+    Parameters
+    ----------
+    nominal_strain : displacement over the initial length, shape (n,) `[1]`
+    nominal_stress_Pa : force over the initial area, shape (n,) `[Pa]`
+    strain_budget, stress_budget : relative standard uncertainties of their scales `[1]`
+    stress_resolution_Pa : one step of the load cell over the area `[Pa]`
+    basis : which columns and whose geometry, in words
+    own : the file's own (strain, stress) where they stand beside force and displacement
+    """
+
+    nominal_strain: FloatArray
+    nominal_stress_Pa: FloatArray
+    strain_budget: tuple[Contribution, ...]
+    stress_budget: tuple[Contribution, ...]
+    stress_resolution_Pa: float
+    basis: str
+    own: tuple[FloatArray, FloatArray] | None
+
+
+def register_length(numbers: Mapping[str, Quantity], name: str) -> Quantity:
+    """Take a length such as `diameter_m` from the register.
+
+    Raises
+    ------
+    FitRefused : the register does not give it, or gives nothing positive
+    """
+    if name not in numbers:
+        raise FitRefused(
+            f"the register gives no {name.removesuffix('_m')} of this specimen; fill in its column "
+            f"({name}m)"
+        )
+    length = numbers[name]
+    if not length.value > 0.0:
+        raise FitRefused(f"the register's {name} is {length.value:g} m; a length must be positive")
+    return length
+
+
+def scale_budget(what: str, length: Quantity, power: float = 1.0) -> tuple[Contribution, ...]:
+    """List what an error of a length does to a value that goes with its power, relative `[1]`."""
+    relative = power / length.value
+    lines = (
+        Contribution(f"{what}, reading", relative * length.u_independent, shared=False),
+        Contribution(f"{what}, gauge calibration", relative * length.u_shared, shared=True),
+    )
+    return tuple(c for c in lines if c.u > 0.0)
+
+
+def circular_section(numbers: Mapping[str, Quantity]) -> Section:
+    r"""Area of a cylinder, $A = \pi d^2 / 4$, from the register's `diameter_m`."""
+    d = register_length(numbers, "diameter_m")
+    return Section(math.pi * d.value**2 / 4.0, scale_budget("diameter", d, 2.0))
+
+
+def rectangular_section(numbers: Mapping[str, Quantity]) -> Section:
+    """Area of a flat strip, A = w t, from the register's `width_m` and `thickness_m`."""
+    w, t = register_length(numbers, "width_m"), register_length(numbers, "thickness_m")
+    return Section(w.value * t.value, scale_budget("width", w) + scale_budget("thickness", t))
+
+
+def stress_strain(
+    recording: Recording, section: Section, length: Quantity, length_name: str, machine: Machine
+) -> StressStrain:
+    r"""Reduce a recording to nominal stress and strain, loading positive.
+
+    $$ \varepsilon = \pm \Delta l / l_0, \qquad \sigma = \pm F / A_0 $$
+
+    Force and displacement are preferred, with the register's geometry; the file's own columns
+    then only serve as a check. A file with nothing but its own columns is used as it is: the
+    geometry was its exporter's, and its uncertainty cannot enter. The signs are those of the
+    greatest excursions from the first sample while loading, so exports of either sign agree.
+
+    Parameters
+    ----------
+    recording : with `force_N` and `displacement_m`, or `nominal_strain` and `nominal_stress_Pa`
+    section, length : initial area, and height or gauge length `[m]`
+    length_name : what to call the length (`height`)
+    machine : resolution and calibration of load cell and crosshead
+
+    Raises
+    ------
+    FitRefused : columns are missing, not finite, or never move
+    """
+    columns = recording.columns
+    strain_budget: tuple[Contribution, ...] = (
+        Contribution("displacement calibration", machine.u_displacement_calibration, shared=True),
+    )
+    stress_budget: tuple[Contribution, ...] = (
+        Contribution("load cell calibration", machine.u_force_calibration, shared=True),
+    )
+    own = None
+    if "nominal_strain" in columns and "nominal_stress_Pa" in columns:
+        own = (columns["nominal_strain"], columns["nominal_stress_Pa"])
+    if "force_N" in columns and "displacement_m" in columns:
+        strain, stress = _loading_positive(
+            columns["displacement_m"], columns["force_N"], length.value, section.area_m2
+        )
+        strain_budget += scale_budget(length_name, length)
+        stress_budget += section.budget
+        basis = f"force over the register's cross-section, displacement over its {length_name}"
+        if own is not None:
+            own = _loading_positive(*own)
+    elif own is not None:
+        strain, stress = _loading_positive(*own)
+        own = None
+        basis = (
+            "the file's own stress and strain; the geometry behind them is the exporter's, could "
+            "not be checked and is in no uncertainty"
+        )
+    else:
+        raise FitRefused(
+            "a stress-strain curve needs force_N and displacement_m, or nominal_strain and "
+            f"nominal_stress_Pa; the file has {', '.join(sorted(columns)) or 'no columns'}"
+        )
+    return StressStrain(
+        strain,
+        stress,
+        strain_budget,
+        stress_budget,
+        machine.force_resolution_N / section.area_m2,
+        basis,
+        own,
+    )
+
+
+def _loading_positive(
+    path: FloatArray, load: FloatArray, length: float = 1.0, area: float = 1.0
+) -> tuple[FloatArray, FloatArray]:
+    """Divide by length and area, signed by where the loading takes the two columns."""
+    if path.size == 0:
+        raise FitRefused("the file has no samples")
+    if not (math.isfinite(np.add.reduce(path)) and math.isfinite(np.add.reduce(load))):
+        raise FitRefused("displacement, force, strain or stress holds values that are not finite")
+    travel = path - path[0]
+    far = int(np.abs(travel).argmax())
+    if travel[far] == 0.0:
+        raise FitRefused(
+            f"displacement (or strain) is the same in all {path.size} samples: nothing was loaded"
+        )
+    rise = load[: far + 1] - load[0]
+    top = rise[int(np.abs(rise).argmax())]
+    return path / math.copysign(length, travel[far]), load / math.copysign(area, top)
+
+
+def disagreement(curve: StressStrain, inside: IndexArray, tolerance: float) -> tuple[Flag, ...]:
+    """Hold the file's own stress and strain against force, displacement and geometry.
+
+    Parameters
+    ----------
+    inside : indices of the samples to compare
+    tolerance : greatest difference, relative to the greatest value among them, to pass unnoticed
+    """
+    if curve.own is None:
+        return ()
+    flags = []
+    pairs = (
+        ("strain", curve.own[0], curve.nominal_strain),
+        ("stress", curve.own[1], curve.nominal_stress_Pa),
+    )
+    for name, theirs, ours in pairs:
+        a, b = theirs[inside], ours[inside]
+        size = float(np.abs(b).max())
+        worst = float(np.abs(a - b).max())
+        if worst > tolerance * size > 0.0:
+            flags.append(
+                Flag(
+                    "own-columns-disagree",
+                    f"the file's own {name} is {float(a.dot(b) / b.dot(b)):.4f} times what force, "
+                    "displacement and the register's geometry give; they differ by up to "
+                    f"{100 * worst / size:.2g} % of the {name} in the window",
+                )
+            )
+    return tuple(flags)
