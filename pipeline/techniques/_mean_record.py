@@ -1,0 +1,206 @@
+"""One record per property of one material: the mean over specimens, and what stands behind it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+
+from pipeline.core.errors import FitRefused
+from pipeline.core.properties import property_key
+from pipeline.core.quantity import Contribution, Quantity
+from pipeline.core.records import (
+    Condition,
+    Detail,
+    Flag,
+    MeasuredValue,
+    Measurement,
+    Origin,
+    PropertyRecord,
+    Summary,
+)
+from pipeline.estimators.mean import mean_with_shared, outliers
+
+_SAME_RATE = 1.2  # rates within this ratio are one condition: heights differ, speeds do not
+
+Pair = tuple[Measurement, MeasuredValue]
+
+
+def summarise_by_mean(
+    measurements: Sequence[Measurement], technique: str, keys: Sequence[str]
+) -> Summary:
+    """Average each property over the specimens that gave it; values of other conditions stay apart.
+
+    Parameters
+    ----------
+    measurements : of one material in one campaign; their order does not matter
+    technique : name and version (`compression@1`), for the origins
+    keys : property keys in the order of the records
+
+    Raises
+    ------
+    FitRefused : no measurements, or of more than one material or campaign
+    """
+    owners = {(m.specimen.campaign, m.specimen.material) for m in measurements}
+    if len(owners) != 1:
+        raise FitRefused(
+            f"a summary is of one material in one campaign, not of {len(owners)}: {sorted(owners)}"
+        )
+    ordered = sorted(measurements, key=lambda m: (m.specimen.line, m.specimen.id))
+    records = tuple(
+        _record(pairs, conditions, technique)
+        for key in keys
+        for pairs, conditions in _alike([(m, v) for m in ordered for v in m.values if v.key == key])
+    )
+    return Summary(records, refusals=tuple(r for m in ordered for r in m.refusals))
+
+
+def _alike(pairs: Sequence[Pair]) -> Iterator[tuple[list[Pair], dict[str, Condition]]]:
+    """Group values by their conditions; strain rates need only be nearly the same."""
+    groups: dict[tuple[tuple[str, Condition], ...], list[tuple[float | None, Pair]]] = {}
+    for measurement, value in pairs:
+        conditions = {**measurement.specimen.conditions, **value.conditions}
+        rate = conditions.pop("rate_per_s", None)
+        exact = tuple(sorted(conditions.items()))
+        groups.setdefault(exact, []).append(
+            (rate if isinstance(rate, float) else None, (measurement, value))
+        )
+    for exact, rated in groups.items():
+        unrated = [pair for rate, pair in rated if rate is None]
+        if unrated:
+            yield unrated, dict(exact)
+        rates = sorted({rate for rate, _ in rated if rate is not None})
+        while rates:
+            near = [r for r in rates if r <= _SAME_RATE * rates[0]]
+            members = [(r, pair) for r, pair in rated if r is not None and r in near]
+            mean = math.fsum(r for r, _ in members) / len(members)
+            yield (
+                [pair for _, pair in members],
+                {**dict(exact), "rate_per_s": float(f"{mean:.6g}")},
+            )
+            rates = rates[len(near) :]
+
+
+def _record(
+    pairs: Sequence[Pair], conditions: Mapping[str, Condition], technique: str
+) -> PropertyRecord:
+    specimen, first = pairs[0][0].specimen, pairs[0][1]
+    values = [v.quantity.value for _, v in pairs]
+    n = len(values)
+    unit = first.quantity.unit
+    shared = _shared_lines(pairs)
+    mean = mean_with_shared(
+        values, first.quantity.u_independent, math.sqrt(math.fsum(c.u**2 for c in shared))
+    )
+    if n == 1:
+        budget = first.budget
+    else:
+        scatter = Contribution("scatter between specimens", mean.u_independent, shared=False)
+        budget = (scatter, *shared)
+    return PropertyRecord(
+        key=first.key,
+        material=specimen.material,
+        campaign=specimen.campaign,
+        quantity=Quantity.from_budget(mean.value, unit, budget),
+        n=n,
+        sd=mean.sd,
+        ci95=mean.ci95,
+        conditions=conditions,
+        method=first.method if n == 1 else f"mean of {n} specimens; {first.method}",
+        budget=budget,
+        origins=tuple(_origin(m, v, technique) for m, v in pairs),
+        flags=_merged_flags(pairs) + _flags_of_mean(pairs, mean.value),
+        diagnostics=_diagnostics(pairs, mean.degrees_of_freedom),
+    )
+
+
+def _shared_lines(pairs: Sequence[Pair]) -> tuple[Contribution, ...]:
+    """Average each shared source over the specimens: one error, fully correlated."""
+    totals: dict[str, float] = {}
+    for _, value in pairs:
+        for line in value.budget:
+            if line.shared:
+                totals[line.source] = totals.get(line.source, 0.0) + line.u
+    return tuple(Contribution(source, u / len(pairs), True) for source, u in totals.items())
+
+
+def _origin(measurement: Measurement, value: MeasuredValue, technique: str) -> Origin:
+    specimen, source = measurement.specimen, measurement.source
+    first, last = (None, None) if value.lines is None else value.lines
+    return Origin(
+        specimen=specimen.id,
+        value=value.quantity.value,
+        u_independent=value.quantity.u_independent,
+        u_shared=value.quantity.u_shared,
+        register=specimen.register,
+        register_line=specimen.line,
+        path=None if source is None else source.path,
+        sha256=None if source is None else source.sha256,
+        first_line=first,
+        last_line=last,
+        reader=None if source is None else f"{source.reader}@{source.reader_version}",
+        technique=technique,
+        diagnostics=value.diagnostics,
+    )
+
+
+def _merged_flags(pairs: Sequence[Pair]) -> tuple[Flag, ...]:
+    """Say each flag of the specimens once, with who has it and the first one's numbers."""
+    found: dict[str, list[tuple[str, str]]] = {}
+    for measurement, value in pairs:
+        for flag in value.flags:
+            found.setdefault(flag.name, []).append((measurement.specimen.id, flag.detail))
+    if len(pairs) == 1:
+        return pairs[0][1].flags
+    merged = []
+    for name, said in found.items():
+        who = list(dict.fromkeys(specimen for specimen, _ in said))
+        merged.append(
+            Flag(
+                name,
+                f"{len(who)} of {len(pairs)} specimens ({', '.join(who)}); "
+                f"{said[0][0]}: {said[0][1]}",
+            )
+        )
+    return tuple(merged)
+
+
+def _flags_of_mean(pairs: Sequence[Pair], mean: float) -> tuple[Flag, ...]:
+    key = property_key(pairs[0][1].key)
+    low, high = key.plausible
+    named = [(m.specimen.id, v.quantity.value) for m, v in pairs]
+    flags = []
+    if len(pairs) == 1:
+        flags.append(
+            Flag("single-specimen", "one specimen: the scatter between specimens is unknown")
+        )
+    flags += [
+        Flag(
+            "outlier",
+            f"{named[i][0]} with {named[i][1]:.5g} {key.unit} stands apart from the other "
+            f"{len(pairs) - 1} (modified z-score beyond 3.5); it is in the mean all the same",
+        )
+        for i in outliers([value for _, value in named])
+    ]
+    odd = [f"{who} {value:.5g}" for who, value in named if not low <= value <= high]
+    if odd or not low <= mean <= high:
+        flags.append(
+            Flag(
+                "implausible",
+                f"a soft elastomer has {low:g} to {high:g} {key.unit}; mean {mean:.5g}"
+                + (f"; outside: {', '.join(odd)}" if odd else ""),
+            )
+        )
+    return tuple(flags)
+
+
+def _diagnostics(pairs: Sequence[Pair], degrees_of_freedom: float) -> dict[str, Detail]:
+    values = [v.quantity.value for _, v in pairs]
+    details: dict[str, Detail] = {
+        "min": min(values),
+        "max": max(values),
+        "mean_u_of_a_specimen": math.fsum(v.quantity.standard_uncertainty for _, v in pairs)
+        / len(pairs),
+    }
+    if math.isfinite(degrees_of_freedom):
+        details["degrees_of_freedom"] = degrees_of_freedom
+    return details

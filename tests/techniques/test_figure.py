@@ -1,0 +1,60 @@
+"""The figure draws what it says on whatever axes it is handed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pipeline.core.records import Summary
+from pipeline.techniques import compression, tension
+from tests.techniques.curves import CYLINDER, STRIP, reduce
+
+STRAIN = np.arange(0.0, 0.3, 5e-4)
+
+
+class Axes:
+    """Remembers what was drawn."""
+
+    def __init__(self) -> None:
+        self.lines: list[tuple[Any, Any]] = []
+        self.spans: list[tuple[float, float]] = []
+        self.labels: dict[str, str] = {}
+
+    def plot(self, x: Any, y: Any, **style: object) -> None:
+        self.lines.append((x, y))
+
+    def axvspan(self, low: float, high: float, **style: object) -> None:
+        self.spans.append((low, high))
+
+    def set_xlabel(self, text: str) -> None:
+        self.labels["x"] = text
+
+    def set_ylabel(self, text: str) -> None:
+        self.labels["y"] = text
+
+
+def test_curve_window_and_fitted_line_with_units() -> None:
+    columns = {"displacement_m": 0.03 * STRAIN, "force_N": np.pi * 0.025**2 * 1e5 * STRAIN}
+    measured = reduce(compression.TECHNIQUE, CYLINDER, columns)
+    axes = Axes()
+    compression.figure(axes, [measured], Summary(()))
+    curve, fitted = axes.lines
+    assert curve[0][-1] == pytest.approx(100 * STRAIN[-1])
+    assert curve[1][-1] == pytest.approx(0.1e3 * STRAIN[-1])
+    assert fitted[0] == pytest.approx([0.0, 5.0])
+    assert fitted[1] == pytest.approx([0.0, 5.0], abs=1e-9)
+    assert axes.spans == [(0.0, 5.0)]
+    assert axes.labels == {"x": "nominal strain [%]", "y": "nominal stress [kPa]"}
+
+
+def test_stiff_curves_are_drawn_in_megapascal_and_refused_ones_without_a_line() -> None:
+    strain = np.arange(0.05, 5.0, 0.02)
+    columns = {"displacement_m": 0.033 * strain, "force_N": 18e-6 * 1e6 * strain}
+    measured = reduce(tension.TECHNIQUE, STRIP, columns)
+    axes = Axes()
+    tension.figure(axes, [measured], Summary(()))
+    assert len(axes.lines) == 1
+    assert axes.spans == []
+    assert axes.labels["y"] == "nominal stress [MPa]"
