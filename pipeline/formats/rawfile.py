@@ -9,6 +9,9 @@ from functools import cached_property
 
 from pipeline.core.errors import RawFileError
 
+HEAD_LINES = 64
+_HEAD_BYTES = 16384
+
 
 @dataclass(frozen=True)
 class RawFile:
@@ -35,32 +38,35 @@ class RawFile:
         data = self.data
         if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
             try:
-                return data.decode("utf-16").encode(), "utf-16"
+                body, encoding = data.decode("utf-16").encode(), "utf-16"
             except UnicodeDecodeError as error:
                 raise RawFileError(
                     self.path,
                     f"starts as UTF-16 but breaks at byte {error.start}",
                     mend="export it again",
                 ) from error
-        nul = data.find(b"\0")
+        elif data.startswith(codecs.BOM_UTF8):
+            body, encoding = data[3:], "utf-8-sig"
+        else:
+            body, encoding = data, "utf-8"
+        self._refuse_nul(body)
+        if not body.isascii():
+            try:
+                body.decode("utf-8")
+            except UnicodeDecodeError:
+                body, encoding = body.decode("latin-1").encode(), "latin-1"
+        return body, encoding
+
+    def _refuse_nul(self, body: bytes) -> None:
+        nul = body.find(b"\0")
         if nul >= 0:
-            line = data.count(b"\n", 0, nul) + 1
             raise RawFileError(
                 self.path,
                 "a NUL byte in a text file",
-                line=line,
-                value="\\x00",
-                mend="export it again (UTF-16 text must start with its byte order mark)",
+                line=body.count(b"\n", 0, nul) + 1,
+                value="\0",
+                mend="export the file again (UTF-16 text must start with its byte order mark)",
             )
-        if data.startswith(codecs.BOM_UTF8):
-            return data[3:], "utf-8-sig"
-        if data.isascii():
-            return data, "utf-8"
-        try:
-            data.decode("utf-8")
-        except UnicodeDecodeError:
-            return data.decode("latin-1").encode(), "latin-1"
-        return data, "utf-8"
 
     @property
     def body(self) -> bytes:
@@ -75,5 +81,14 @@ class RawFile:
     @cached_property
     def head(self) -> list[str]:
         """The first 64 lines as text, without their line ends: enough for any header."""
-        lines = self.body[:16384].decode("utf-8", "replace").split("\n", 64)
-        return [line.rstrip("\r") for line in lines[:64]]
+        lines = self.body[:_HEAD_BYTES].decode("utf-8", "replace").split("\n", HEAD_LINES)
+        return [line.rstrip("\r") for line in lines[:HEAD_LINES]]
+
+    def offset(self, line: int) -> int:
+        """Give the byte of `body` at which a line starts (counted from 0), at most its length."""
+        at = 0
+        for _ in range(line):
+            at = self.body.find(b"\n", at) + 1
+            if at == 0:
+                return len(self.body)
+        return at

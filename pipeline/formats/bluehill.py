@@ -1,0 +1,51 @@
+"""Raw data as Instron Bluehill exports it.
+
+Usage
+-----
+Named `bluehill`; detected by a comma-separated row of bracketed units below the row of labels.
+
+Format
+------
+Optional header lines `key,"value",unit` and a blank line, the row of labels
+(`Time,Compressive extension,Load`), the row of units (`(s),(mm),(N)`), then rows of numbers with
+decimal points, which may stand in double quotes and then carry THOUSANDS COMMAS
+(`"242,370.29658"`). A comma outside quotes always parts fields. Compression is signed either way
+and a preload is not zeroed; both are delivered as they stand. Of several extensions or loads
+(`Extension`, `Compressive extension`) the plain one is `displacement_m` or `force_N`.
+
+Uncertainties
+-------------
+None in the file.
+
+Metadata
+--------
+Every header line under its key, value and unit joined by a space.
+"""
+
+from __future__ import annotations
+
+from pipeline.core.records import Recording
+from pipeline.formats.cells import Dialect
+from pipeline.formats.format import Format
+from pipeline.formats.header import Layout, notes, two_row_layout, units_row
+from pipeline.formats.rawfile import RawFile
+from pipeline.formats.table import Reader, read_table, required
+
+_READER = Reader("bluehill", 1, Dialect(",", quoted=True))
+
+
+def _layout(head: list[str]) -> Layout | None:
+    units = units_row(head, ",")
+    return None if units is None else two_row_layout(head, ",", units - 1)
+
+
+def _recognises(head: list[str]) -> bool:
+    return _layout(head) is not None
+
+
+def _read(file: RawFile) -> Recording:
+    layout = required(_layout(file.head), file, _READER.name)
+    return read_table(file, layout, _READER, notes(file.head[: layout.names], ","))
+
+
+FORMAT = Format(_READER.name, _READER.version, "Instron Bluehill raw data", _recognises, _read)

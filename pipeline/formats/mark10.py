@@ -1,0 +1,64 @@
+"""Logs of Mark-10 and Chatillon force gauges on a motorised stand (MESUR gauge).
+
+Usage
+-----
+Named `mark10`; detected by a line `Units:` above a tab-separated row that starts with `Reading`.
+
+Format
+------
+A time stamp, `Units: N`, `Readings: Continuous`, `X-Axis: Travel`, `Travel Unit: mm`, the row of
+labels (`Reading`, `Load`, `Travel`, `Time`, parted by tabs), then rows of decimal-point numbers;
+CRLF. The unit of the load and of the travel stand in the header; the time is in seconds and the
+reading is a running number, which the exporter does not write: their use is flagged.
+
+Uncertainties
+-------------
+None in the file. The load is printed with the gauge's resolution, so its last digit bounds it.
+
+Metadata
+--------
+`timestamp` and every `key: value` line as text.
+"""
+
+from __future__ import annotations
+
+from pipeline.core.records import Recording
+from pipeline.formats.cells import Dialect
+from pipeline.formats.format import Format
+from pipeline.formats.header import Layout, notes, split, split_label
+from pipeline.formats.rawfile import RawFile
+from pipeline.formats.table import Reader, read_table, required
+
+_READER = Reader("mark10", 1, Dialect("\t"), {"reading": "1", "time": "s"})
+_HEADER_UNITS = {"Load": "Units", "Travel": "Travel Unit"}
+_SPELLINGS = {"lbF": "lbf", "ozF": "ozf", "kgF": "kgf", "gF": "gf"}
+
+
+def _layout(head: list[str]) -> Layout | None:
+    for at, line in enumerate(head):
+        if line.startswith("Reading\t"):
+            labels, units = zip(*map(split_label, split(line, "\t")), strict=True)
+            return Layout(at, at, labels, units)
+    return None
+
+
+def _recognises(head: list[str]) -> bool:
+    layout = _layout(head)
+    return layout is not None and any(line.startswith("Units:") for line in head[: layout.names])
+
+
+def _read(file: RawFile) -> Recording:
+    layout = required(_layout(file.head), file, _READER.name)
+    header = file.head[: layout.names]
+    metadata = notes(header)
+    if header and header[0][:1].isdigit():
+        metadata = {"timestamp": header[0].strip(), **notes(header[1:])}
+    header_units = {
+        label: _SPELLINGS.get(metadata[key], metadata[key])
+        for label, key in _HEADER_UNITS.items()
+        if key in metadata
+    }
+    return read_table(file, layout, _READER, metadata, header_units)
+
+
+FORMAT = Format(_READER.name, _READER.version, "Mark-10 or Chatillon log", _recognises, _read)

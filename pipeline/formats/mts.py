@@ -1,0 +1,56 @@
+"""Tab-separated text with decimal commas, as MTS TestSuite exports it on a European computer.
+
+Usage
+-----
+Named `mts`; detected by a tab-separated table with units and a force or stress, whose rows hold
+more commas than points. A table with `Machine Extension` is Nexygen's.
+
+Format
+------
+UTF-8 with a byte order mark, CRLF, perhaps some `key: value` or `key<TAB>value` lines, then the
+labels with their units (`Time (s)`, `Crosshead (mm)`, `Load (kN)`) or a row of labels above a row
+of units, then rows of decimal-comma numbers. A decimal point is an error: it could be a thousands
+separator. The load is in kN.
+
+Uncertainties
+-------------
+None in the file. A load in kN with four decimals resolves 0.1 N, coarse for soft specimens.
+
+Metadata
+--------
+Every line above the table as text.
+"""
+
+from __future__ import annotations
+
+from pipeline.core.records import Recording
+from pipeline.formats.cells import Dialect
+from pipeline.formats.format import Format
+from pipeline.formats.header import Layout, inline_layout, notes, two_row_layout, units_row
+from pipeline.formats.rawfile import RawFile
+from pipeline.formats.table import Reader, read_table, required
+
+_READER = Reader("mts", 1, Dialect("\t", decimal=","))
+
+
+def _layout(head: list[str]) -> Layout | None:
+    units = units_row(head, "\t", bare=True)
+    if units is not None:
+        return two_row_layout(head, "\t", units - 1)
+    return inline_layout(head, "\t")
+
+
+def _recognises(head: list[str]) -> bool:
+    layout = _layout(head)
+    if layout is None or "machine extension" in map(str.casefold, layout.labels):
+        return False
+    rows = "".join(head[layout.rows :])
+    return rows.count(",") >= rows.count(".") and layout.has("force_N", "nominal_stress_Pa")
+
+
+def _read(file: RawFile) -> Recording:
+    layout = required(_layout(file.head), file, _READER.name)
+    return read_table(file, layout, _READER, notes(file.head[: layout.names], "\t"))
+
+
+FORMAT = Format(_READER.name, _READER.version, "MTS text with decimal commas", _recognises, _read)

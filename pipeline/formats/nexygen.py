@@ -1,0 +1,48 @@
+"""Tab-separated text as Lloyd Instruments' Nexygen exports it.
+
+Usage
+-----
+Named `nexygen`; detected by a tab-separated row of labels with units, one of them `Machine
+Extension`.
+
+Format
+------
+UTF-16 text with its byte order mark (UTF-8 is read too), perhaps some `key: value` lines, the row
+of labels (`Load (N)`, `Machine Extension (mm)`), then rows of decimal-point numbers.
+
+Uncertainties
+-------------
+None in the file. The machine extension holds the compliance of frame and load cell.
+
+Metadata
+--------
+Every `key: value` line above the table as text.
+"""
+
+from __future__ import annotations
+
+from pipeline.core.records import Recording
+from pipeline.formats.cells import Dialect
+from pipeline.formats.format import Format
+from pipeline.formats.header import Layout, inline_layout, notes
+from pipeline.formats.rawfile import RawFile
+from pipeline.formats.table import Reader, read_table, required
+
+_READER = Reader("nexygen", 1, Dialect("\t"))
+
+
+def _layout(head: list[str]) -> Layout | None:
+    return inline_layout(head, "\t")
+
+
+def _recognises(head: list[str]) -> bool:
+    layout = _layout(head)
+    return layout is not None and "machine extension" in map(str.casefold, layout.labels)
+
+
+def _read(file: RawFile) -> Recording:
+    layout = required(_layout(file.head), file, _READER.name)
+    return read_table(file, layout, _READER, notes(file.head[: layout.names], "\t"))
+
+
+FORMAT = Format(_READER.name, _READER.version, "Lloyd Nexygen text", _recognises, _read)

@@ -1,0 +1,56 @@
+"""Comma-separated curves with units beside the labels, as the Ecoflex phantom set has them.
+
+Usage
+-----
+Named `phantom`; detected by a comma-separated row of labels that carry their units and hold a
+load or a stress. Written for the compression curves of Dawood et al. 2026 (Instron 5900, 50 x 30
+mm cylinders); any plain export of this shape is read the same way.
+
+Format
+------
+Note lines (`EF10_50T_A_sample_1`, `Cylinder Diameter: 50mm;`), the row of labels
+(`Time (s),Compression (mm),Load (N),Engineering Strain [-],Engineering Stress (kPa),...`), then
+rows of decimal-point numbers. In the set strain and stress are negative in compression while the
+load is positive; signs are delivered as they stand, `-0.000000` included. A note that states a
+unit for a column (`Load (kN);`) is held against the column.
+
+Uncertainties
+-------------
+None in the file; six decimals are printed whatever the load cell resolves.
+
+Metadata
+--------
+Every note as text: `key: value` under its key, a line without a value under its line number.
+"""
+
+from __future__ import annotations
+
+from pipeline.core.records import Recording
+from pipeline.formats.cells import Dialect
+from pipeline.formats.documentation import stated_units
+from pipeline.formats.format import Format
+from pipeline.formats.header import Layout, inline_layout, notes
+from pipeline.formats.rawfile import RawFile
+from pipeline.formats.table import Reader, read_table, required
+
+_READER = Reader("phantom", 1, Dialect(","))
+
+
+def _layout(head: list[str]) -> Layout | None:
+    return inline_layout(head, ",")
+
+
+def _recognises(head: list[str]) -> bool:
+    layout = _layout(head)
+    return layout is not None and layout.has("force_N", "nominal_stress_Pa", "true_stress_Pa")
+
+
+def _read(file: RawFile) -> Recording:
+    layout = required(_layout(file.head), file, _READER.name)
+    header = file.head[: layout.names]
+    return read_table(file, layout, _READER, notes(header), stated_units("\n".join(header)))
+
+
+FORMAT = Format(
+    _READER.name, _READER.version, "curves with units beside the labels", _recognises, _read
+)

@@ -1,0 +1,124 @@
+"""What testing machines call the quantities that techniques need, and the names they get here.
+
+A closed table: a column whose label is not listed keeps its own name, so that nothing is taken
+for a force because it looks like one.
+"""
+
+from __future__ import annotations
+
+import re
+
+# name in SI -> (SI unit, labels in order of preference); of two columns in one file that mean the
+# same quantity the one listed first gets the name, the other keeps its own
+STANDARD: dict[str, tuple[str, tuple[str, ...]]] = {
+    "time_s": (
+        "s",
+        ("time", "test time", "running time", "elapsed time", "zeit", "prüfzeit"),
+    ),
+    "displacement_m": (
+        "m",
+        (
+            "displacement",
+            "extension",
+            "compression",
+            "compressive extension",
+            "compressive displacement",
+            "tensile extension",
+            "tensile displacement",
+            "machine extension",
+            "crosshead",
+            "crosshead displacement",
+            "axial displacement",
+            "travel",
+            "standard travel",
+            "standardweg",
+            "stroke",
+            "position",
+            "standard extensometer",
+        ),
+    ),
+    "force_N": (
+        "N",
+        (
+            "force",
+            "load",
+            "compressive load",
+            "tensile load",
+            "axial force",
+            "standard force",
+            "standard load cell",
+            "standardkraft",
+            "kraft",
+        ),
+    ),
+    "nominal_strain": (
+        "1",
+        (
+            "engineering strain",
+            "nominal strain",
+            "compressive strain",
+            "tensile strain",
+            "strain",
+            "dehnung",
+        ),
+    ),
+    "nominal_stress_Pa": (
+        "Pa",
+        (
+            "engineering stress",
+            "nominal stress",
+            "compressive stress",
+            "tensile stress",
+            "stress",
+            "spannung",
+        ),
+    ),
+    "true_strain": ("1", ("true strain",)),
+    "true_stress_Pa": ("Pa", ("true stress",)),
+}
+
+_MEANING = {
+    label: (rank, name)
+    for name, (_, labels) in STANDARD.items()
+    for rank, label in enumerate(labels)
+}
+_REMARK = re.compile(r"\s*\([^()]*\)$")  # Bluehill: `Tensile strain (Extension)`
+
+
+def meaning(label: str) -> tuple[int, str] | None:
+    """Give rank and standard name of a label, or None for a label outside the table."""
+    return _MEANING.get(_REMARK.sub("", label).casefold())
+
+
+def own_name(label: str, si_unit: str) -> str:
+    """Make a column name from label and SI unit: `Speed`, `m/s` to `speed_m_per_s`."""
+    plain = re.sub(r"\W+", "_", label.casefold()).strip("_")
+    if si_unit == "1":
+        return plain
+    return f"{plain}_{si_unit.removeprefix('1').replace('.', '').replace('/', '_per_')}".replace(
+        "__", "_"
+    )
+
+
+def assign(labels: tuple[str, ...], si_units: tuple[str, ...]) -> tuple[str, ...]:
+    """Name the columns of a table.
+
+    Parameters
+    ----------
+    labels, si_units : per column, in order; no label twice
+
+    Returns
+    -------
+    the names, in order: a standard name where label and unit agree on it, else the column's own
+    """
+    best: dict[str, tuple[int, int]] = {}
+    for column, (label, si_unit) in enumerate(zip(labels, si_units, strict=True)):
+        found = meaning(label)
+        if found is None or STANDARD[found[1]][0] != si_unit:
+            continue
+        rank, name = found
+        best[name] = min(best.get(name, (rank, column)), (rank, column))
+    names = [own_name(label, si_unit) for label, si_unit in zip(labels, si_units, strict=True)]
+    for name, (_, column) in best.items():
+        names[column] = name
+    return tuple(names)

@@ -1,0 +1,53 @@
+"""Semicolon-separated tensile curves of the Soft Robotics Materials Database.
+
+Usage
+-----
+Named `soro`; detected by a semicolon-separated row of labels, some with units, that hold a stress
+or a load. Written for the files of Marechal et al. 2021 (10.1089/soro.2019.0115; ASTM D412,
+Instron 5569 and 68SC-2, 33 x 6 x 3 mm).
+
+Format
+------
+Some 18 header lines `label;value;url;;` whose labels differ between files, a line of semicolons,
+the row of labels (`Time (s);True Strain;True Stress (MPa);Engineering Strain;Engineering Stress
+(MPa)`), then rows of decimal-point numbers; CRLF or LF. The strain columns carry no unit: they
+are pure numbers, true = ln(1 + engineering), and each reading of one without a unit is flagged.
+
+Uncertainties
+-------------
+None in the file. Strain is crosshead displacement over the gauge length, not an extensometer's.
+
+Metadata
+--------
+Every header line under its label, value and further cells joined by a space.
+"""
+
+from __future__ import annotations
+
+from pipeline.core.records import Recording
+from pipeline.formats.cells import Dialect
+from pipeline.formats.format import Format
+from pipeline.formats.header import Layout, inline_layout, notes
+from pipeline.formats.rawfile import RawFile
+from pipeline.formats.table import Reader, read_table, required
+
+_READER = Reader("soro", 1, Dialect(";"), {"true strain": "1", "engineering strain": "1"})
+
+
+def _layout(head: list[str]) -> Layout | None:
+    return inline_layout(head, ";")
+
+
+def _recognises(head: list[str]) -> bool:
+    layout = _layout(head)
+    return layout is not None and layout.has("force_N", "nominal_stress_Pa", "true_stress_Pa")
+
+
+def _read(file: RawFile) -> Recording:
+    layout = required(_layout(file.head), file, _READER.name)
+    return read_table(file, layout, _READER, notes(file.head[: layout.names], ";"))
+
+
+FORMAT = Format(
+    _READER.name, _READER.version, "Soft Robotics Materials Database", _recognises, _read
+)

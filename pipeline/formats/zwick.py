@@ -1,0 +1,79 @@
+"""Text exports (`.tra`) of Zwick testXpert.
+
+Usage
+-----
+Named `zwick`; detected by lines of quoted cells from the first line on, the last two of which are
+labels and bare units.
+
+Format
+------
+Summary lines `"label",value,"unit"` of varying number (`"Yield strain","Unknown"` without unit),
+the row of labels (`"Standard travel","Standard force"`), the row of units (`"mm","N"`), then rows
+of unquoted decimal-point numbers with exponents of three digits (`1.46e-007`). After the break a
+lost sensor writes exact zeros to the end: flagged, never dropped. An aborted export ends in a cut
+line, which is refused by its line.
+
+Uncertainties
+-------------
+None in the file; six significant digits are printed.
+
+Metadata
+--------
+Every summary line under its label, value and unit joined by a space. `Force maximum` may be a
+stress: go by its unit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from pipeline.core.records import Flag, Recording
+from pipeline.formats.cells import Dialect
+from pipeline.formats.format import Format
+from pipeline.formats.header import Layout, notes, two_row_layout
+from pipeline.formats.rawfile import RawFile
+from pipeline.formats.table import Reader, read_table, required
+
+_READER = Reader("zwick", 1, Dialect(","))
+
+
+def _layout(head: list[str]) -> Layout | None:
+    quoted = 0
+    while quoted < len(head) and head[quoted].startswith('"'):
+        quoted += 1
+    layout = two_row_layout(head, ",", quoted - 2)
+    if layout is None or any('"(' in line for line in head[layout.names : layout.rows]):
+        return None  # bracketed units are Bluehill's
+    return layout
+
+
+def _recognises(head: list[str]) -> bool:
+    layout = _layout(head)
+    return layout is not None and layout.has("force_N", "nominal_stress_Pa")
+
+
+def _read(file: RawFile) -> Recording:
+    layout = required(_layout(file.head), file, _READER.name)
+    recording = read_table(file, layout, _READER, notes(file.head[: layout.names], ","))
+    return replace(recording, flags=recording.flags + _trailing_zeros(recording))
+
+
+def _trailing_zeros(recording: Recording) -> tuple[Flag, ...]:
+    """Notice columns that end in exact zeros after values that are not."""
+    flags = []
+    for name, values in recording.columns.items():
+        if values[-1] == 0.0 and values.any():
+            zeros = int(np.argmax(values[::-1] != 0.0))
+            flags.append(
+                Flag(
+                    "trailing-zeros",
+                    f"{name} is exactly 0 in the last {zeros} rows, from line "
+                    f"{recording.source.last_line - zeros + 1}: the sensor lost the specimen",
+                )
+            )
+    return tuple(flags)
+
+
+FORMAT = Format(_READER.name, _READER.version, "Zwick testXpert text", _recognises, _read)
