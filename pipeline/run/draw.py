@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
@@ -83,15 +83,16 @@ def draw_all(jobs: Sequence[FigureJob], folder: Path, bench: Bench) -> None:
 def draw_one(folder: Path, job: FigureJob) -> None:
     """Draw one figure as SVG and PNG."""
     from pipeline.report.figures import moduli_figure, technique_figure  # matplotlib
+    from pipeline.report.moduli import modulus_bars
 
     place = folder / job.name
     place.parent.mkdir(parents=True, exist_ok=True)
     if job.technique is None:
-        records = [r for s in job.summaries for r in s.records if _is_modulus(r.key)]
-        refused = [r for s in job.summaries for r in s.refusals if _is_modulus(r.key)]
-        moduli_figure(
-            place.parent, place.name, job.title, records, refused, job.labels, job.synthetic
-        )
+        records = [r for s in job.summaries for r in s.records]
+        refusals = [r for s in job.summaries for r in s.refusals]
+        names = dict(job.labels)
+        bars = [replace(b, material=names[b.material]) for b in modulus_bars(records, refusals)]
+        moduli_figure(place.parent, place.name, job.title, bars, job.synthetic)
         return
     figure = TECHNIQUES[job.technique].figure
     if figure is not None:

@@ -24,6 +24,8 @@ from pipeline.run.work import FILES_PER_TASK, Reduced, Task, reduce_all
 # Raise it when the driver itself may give another answer from the same file, room and settings.
 SPINE_VERSION = 1
 
+_READERS = {form.name: form.version for form in FORMATS}
+
 Progress = Callable[[str, int, int], None]
 Chunks = Callable[[Sequence[Sequence[Task]]], Iterable[list[Reduced]]]
 
@@ -164,7 +166,7 @@ def _tasks(technique: Technique, bench: Bench) -> Iterator[tuple[str, dict[str, 
                 known = bench.book.known_component("measurement", subject, "reader")
                 parts["file"] = entry.sha256
                 parts["manifest"] = entry.manifest
-                parts["formats"] = digest(sorted(FORMATS))
+                parts["formats"] = digest(sorted(_READERS))
                 parts["reader"] = (
                     _reader(known.removeprefix("reader:").partition("@")[0]) if known else "unknown"
                 )
@@ -173,7 +175,7 @@ def _tasks(technique: Technique, bench: Bench) -> Iterator[tuple[str, dict[str, 
 
 def _reader(name: str) -> str:
     """A reader with the version it has now."""
-    return f"{name}@{FORMATS[name].version}" if name in FORMATS else "none"
+    return f"{name}@{_READERS[name]}" if name in _READERS else "none"
 
 
 def _needed(

@@ -151,7 +151,7 @@ def _account(surveys: list[Survey], measured: list[Measured]) -> list[FileEntry]
 
 def _provenance(config: Config, seen: Mapping[str, Stat], hashes: Mapping[str, str]) -> Provenance:
     code = {path: hashes[path] for path in seen if path.startswith("code/")}
-    stages = {f"reader:{f.name}": f.version for f in FORMATS.values()}
+    stages = {f"reader:{form.name}": form.version for form in FORMATS}
     stages |= {f"technique:{t.key}": t.version for t in TECHNIQUES.values()}
     return Provenance(
         version("deamat"), key_of(code), tuple(sorted(stages.items())),

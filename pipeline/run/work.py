@@ -6,11 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from pipeline.core.errors import RawFileError
+from pipeline.core.errors import ConfigError, RawFileError
 from pipeline.core.records import Flag, Measurement, Recording, Specimen
 from pipeline.core.technique import Context
 from pipeline.formats.detect import by_name, detect
 from pipeline.formats.documentation import contradictions
+from pipeline.formats.format import Format
 from pipeline.formats.rawfile import RawFile
 from pipeline.techniques import TECHNIQUES
 
@@ -70,9 +71,7 @@ def _read(task: Task, path: str) -> Recording:
     file = RawFile(path, (task.raw / path).read_bytes(), task.ends_open)
     if file.sha256 != task.sha256:
         raise RawFileError(path, "the file changed while it was being read", mend="run again")
-    named = task.specimen.format
-    form = by_name(named, task.specimen.register, task.specimen.line) if named else detect(file)
-    recording = form.read(file)
+    recording = _format(task.specimen, file).read(file)
     if task.changed:
         campaign = task.specimen.campaign
         raise RawFileError(
@@ -81,6 +80,18 @@ def _read(task: Task, path: str) -> Recording:
             mend=f"restore it, or look at `deamat register {campaign}` and accept the change",
         )
     return recording
+
+
+def _format(specimen: Specimen, file: RawFile) -> Format:
+    """The format that the register names, or the one that the file shows."""
+    if specimen.format is None:
+        return detect(file)
+    try:
+        return by_name(specimen.format)
+    except ConfigError as error:
+        raise RawFileError(
+            specimen.register, str(error), specimen.line, value=specimen.format
+        ) from error
 
 
 def _flagged(measurement: Measurement, recording: Recording | None, task: Task) -> Measurement:
