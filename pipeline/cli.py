@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 
 import click
 
+from pipeline import __version__
 from pipeline.core.errors import ConfigError, PipelineError
 from pipeline.run.folders import Folders
 
@@ -58,7 +59,7 @@ _json = click.option("--json", "as_json", is_flag=True, help="print JSON for a p
 
 
 @click.group(epilog=_EPILOG, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(package_name="deamat")
+@click.version_option(__version__)
 def cli() -> None:
     """From raw laboratory files of soft dielectric elastomers to material cards people trust."""
 

@@ -7,9 +7,9 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import ExitStack
 from dataclasses import replace
-from importlib.metadata import version
 from typing import Any
 
+from pipeline import __version__
 from pipeline.core.campaign import find_campaigns
 from pipeline.core.config import Config, load_config
 from pipeline.core.errors import ConfigError
@@ -154,7 +154,7 @@ def _provenance(config: Config, seen: Mapping[str, Stat], hashes: Mapping[str, s
     stages = {f"reader:{form.name}": form.version for form in FORMATS}
     stages |= {f"technique:{t.key}": t.version for t in TECHNIQUES.values()}
     return Provenance(
-        version("deamat"), key_of(code), tuple(sorted(stages.items())),
+        __version__, key_of(code), tuple(sorted(stages.items())),
         tuple(sorted(config.files.items())),
     )  # fmt: skip
 

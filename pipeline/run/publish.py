@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 
 from pipeline.core.ledger import FileEntry, Provenance
-from pipeline.materials.card import MaterialCard
+from pipeline.materials.card import Credit, MaterialCard
 from pipeline.materials.curves import write_curves
 from pipeline.materials.database import write_database
 from pipeline.run.book import STALE, Redo, digest, key_of
@@ -70,6 +70,7 @@ def publish(
             "card", material, _card_parts(card, mine), [f"cards/{material}.json"], _writes(card)
         )
         bench.progress("cards", len(cards), len(by_material))
+    simulated = {s.campaign.name for s in bench.surveys if s.campaign and s.campaign.info.synthetic}
     press.make(
         "database", "materials.sqlite",
         {**keys, "files": digest(tuple(files)), "provenance": digest(provenance)},
@@ -77,12 +78,17 @@ def publish(
         lambda r: write_database(r.path("materials.sqlite"), cards, files, provenance),
     )  # fmt: skip
     press.make(
-        "curves", "curves.h5", {g.subject: g.key for g in groups}, ["curves.h5"],
-        lambda r: write_curves(r.path("curves.h5"), [m for g in groups for m in g.measurements]),
+        "curves", "curves.h5",
+        {**{g.subject: g.key for g in groups}, "synthetic": ", ".join(sorted(simulated))},
+        ["curves.h5"],
+        lambda r: write_curves(
+            r.path("curves.h5"), [m for g in groups for m in g.measurements],
+            synthetic_campaigns=simulated,
+        ),
     )  # fmt: skip
     press.make(
         "audit", "files.json", {"files": digest(tuple(files))}, ["audit/files.json"],
-        lambda r: _write(r.path("audit/files.json"), [asdict(f) for f in files]),
+        lambda r: _write(r.path("audit/files.json"), _ledger(files)),
     )  # fmt: skip
     _figures(groups, press)
 
@@ -90,15 +96,19 @@ def publish(
 def _card(material: str, groups: Sequence[Group], bench: Bench) -> MaterialCard:
     infos = {s.campaign.name: s.campaign.info for s in bench.surveys if s.campaign}
     campaigns = sorted({g.campaign for g in groups})
+    credits_ = tuple(
+        Credit(c, i.title, i.laboratory, i.licence, i.source, i.synthetic)
+        for c, i in ((c, infos[c]) for c in campaigns)
+    )
     summaries = [g.summary for g in groups if g.summary]
     return MaterialCard(
         material=material,
         name=bench.config.name_of(material),
-        synthetic=any(infos[c].synthetic for c in campaigns),
-        campaigns=tuple((c, infos[c].title, infos[c].licence) for c in campaigns),
+        synthetic=any(c.synthetic for c in credits_),
         records=tuple(r for s in summaries for r in s.records),
         laws=tuple(law for s in summaries for law in s.laws),
         refusals=tuple(r for s in summaries for r in s.refusals),
+        campaigns=credits_,
     )
 
 
@@ -108,11 +118,15 @@ def _card_parts(card: MaterialCard, groups: Sequence[Group]) -> dict[str, str]:
 
 
 def _writes(card: MaterialCard) -> Callable[[Release], None]:
-    return lambda r: _write(r.path(f"cards/{card.material}.json"), card.to_document())
+    return lambda r: _write(r.path(f"cards/{card.material}.json"), card.to_json())
 
 
-def _write(path: Path, document: object) -> None:
-    path.write_text(json.dumps(document, indent=1, ensure_ascii=False) + "\n", "utf-8")
+def _ledger(files: Sequence[FileEntry]) -> bytes:
+    return (json.dumps([asdict(f) for f in files], indent=1) + "\n").encode()
+
+
+def _write(path: Path, data: bytes) -> None:
+    path.write_bytes(data)
 
 
 def _figures(groups: Sequence[Group], press: Press) -> None:

@@ -20,8 +20,6 @@ from pipeline.core.records import (
 )
 from pipeline.estimators.mean import mean_with_shared, outliers
 
-_SAME_RATE = 1.2  # rates within this ratio are one condition: heights differ, speeds do not
-
 Pair = tuple[Measurement, MeasuredValue]
 
 
@@ -55,29 +53,24 @@ def summarise_by_mean(
 
 
 def _alike(pairs: Sequence[Pair]) -> Iterator[tuple[list[Pair], dict[str, Condition]]]:
-    """Group values by their conditions; strain rates need only be nearly the same."""
-    groups: dict[tuple[tuple[str, Condition], ...], list[tuple[float | None, Pair]]] = {}
+    """Group values by their conditions; a strain rate is that of the machine's speed.
+
+    Heights differ from specimen to specimen and the rates with them, but the speed that was set is
+    one condition: the record tells the mean rate of its specimens.
+    """
+    groups: dict[tuple[object, ...], list[tuple[Pair, dict[str, Condition]]]] = {}
     for measurement, value in pairs:
         conditions = {**measurement.specimen.conditions, **value.conditions}
-        rate = conditions.pop("rate_per_s", None)
-        exact = tuple(sorted(conditions.items()))
-        groups.setdefault(exact, []).append(
-            (rate if isinstance(rate, float) else None, (measurement, value))
-        )
-    for exact, rated in groups.items():
-        unrated = [pair for rate, pair in rated if rate is None]
-        if unrated:
-            yield unrated, dict(exact)
-        rates = sorted({rate for rate, _ in rated if rate is not None})
-        while rates:
-            near = [r for r in rates if r <= _SAME_RATE * rates[0]]
-            members = [(r, pair) for r, pair in rated if r is not None and r in near]
-            mean = math.fsum(r for r, _ in members) / len(members)
-            yield (
-                [pair for _, pair in members],
-                {**dict(exact), "rate_per_s": float(f"{mean:.6g}")},
-            )
-            rates = rates[len(near) :]
+        fixed = {k: v for k, v in conditions.items() if k != "rate_per_s"}
+        speed = measurement.specimen.numbers.get("speed_m_per_s")
+        setting = (*sorted(fixed.items()), None if speed is None else speed.value)
+        groups.setdefault(setting, []).append(((measurement, value), conditions))
+    for members in groups.values():
+        conditions = dict(members[0][1])
+        rates = [r for _, c in members if isinstance(r := c.get("rate_per_s"), float)]
+        if rates:
+            conditions["rate_per_s"] = float(f"{math.fsum(rates) / len(rates):.6g}")
+        yield [pair for pair, _ in members], conditions
 
 
 def _record(
@@ -157,8 +150,7 @@ def _merged_flags(pairs: Sequence[Pair]) -> tuple[Flag, ...]:
         merged.append(
             Flag(
                 name,
-                f"{len(who)} of {len(pairs)} specimens ({', '.join(who)}); "
-                f"{said[0][0]}: {said[0][1]}",
+                f"{len(who)} of {len(pairs)} specimens, such as {who[0]}: {said[0][1]}",
             )
         )
     return tuple(merged)
@@ -177,7 +169,7 @@ def _flags_of_mean(pairs: Sequence[Pair], mean: float) -> tuple[Flag, ...]:
         Flag(
             "outlier",
             f"{named[i][0]} with {named[i][1]:.5g} {key.unit} stands apart from the other "
-            f"{len(pairs) - 1} (modified z-score beyond 3.5); it is in the mean all the same",
+            f"{len(pairs) - 1} (Grubbs, 1 %); it is in the mean all the same",
         )
         for i in outliers([value for _, value in named])
     ]

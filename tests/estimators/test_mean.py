@@ -79,6 +79,18 @@ def test_outliers_are_named_from_five_values_on() -> None:
     assert outliers([10.0, 10.2, 9.9, 10.1, 20.0]) == (4,)
     assert outliers([10.0, 10.2, 9.9, 10.1, 10.3]) == ()
     assert outliers([10.0, 10.2, 9.9, 20.0]) == ()
-    # 0.6745 * 5.19 / 1 stays within 3.5, 0.6745 * 5.2 / 1 does not
-    assert outliers([-1.0, 0.0, 1.0, -1.0, 5.18]) == ()
-    assert outliers([-1.0, 0.0, 1.0, -1.0, 5.2]) == (4,)
+
+
+def test_outliers_agree_with_the_published_table() -> None:
+    # Grubbs, two-sided 1 %: n = 5 gives 1.764 (ASTM E178, table 1, upper 0.5 %)
+    base = np.array([-1.0, 0.5, 1.0, -0.5])
+    grid = np.linspace(1.5, 60.0, 4000)
+    first = next(x for x in grid if outliers([*base, float(x)]))
+    sample = np.array([*base, first])
+    assert (sample[-1] - sample.mean()) / sample.std(ddof=1) == pytest.approx(1.764, abs=1e-3)
+
+
+def test_one_clean_sample_in_a_hundred_is_accused() -> None:
+    rng = np.random.default_rng(5)
+    accused = sum(bool(outliers(list(rng.normal(size=8)))) for _ in range(4000))
+    assert 0.006 < accused / 4000 < 0.014

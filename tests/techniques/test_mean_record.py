@@ -33,8 +33,10 @@ def measurement(
     conditions: Mapping[str, Condition] | None = None,
     flags: tuple[Flag, ...] = (),
     shared: float = 0.01,
+    speed: float | None = None,
 ) -> Measurement:
-    who: Specimen = specimen("compression", CYLINDER, name, line, {"age": "after cure"})
+    numbers = CYLINDER if speed is None else {**CYLINDER, "speed_m_per_s": Quantity(speed, "m/s")}
+    who: Specimen = specimen("compression", numbers, name, line, {"age": "after cure"})
     if value is None:
         refusal = Refusal(KEY, "too few samples", "m", "c", name)
         return Measurement(who, (), (refusal,), {}, source(100))
@@ -144,21 +146,21 @@ def test_implausible_values_are_flagged() -> None:
 def test_flags_of_specimens_are_said_once() -> None:
     toe = (Flag("toe", "slope 5 kPa"),)
     record = only(measurement("s1", 2, 1e5, flags=toe), measurement("s2", 3, 1e5))
-    assert record.flags == (Flag("toe", "1 of 2 specimens (s1); s1: slope 5 kPa"),)
+    assert record.flags == (Flag("toe", "1 of 2 specimens, such as s1: slope 5 kPa"),)
 
 
 def test_rates_that_differ_by_height_only_are_one_condition() -> None:
     record = only(
-        measurement("s1", 2, 1e5, {"rate_per_s": 0.0055}),
-        measurement("s2", 3, 1e5, {"rate_per_s": 0.0056}),
+        measurement("s1", 2, 1e5, {"rate_per_s": 0.0050}, speed=1e-4),
+        measurement("s2", 3, 1e5, {"rate_per_s": 0.0061}, speed=1e-4),
     )
     assert record.conditions["rate_per_s"] == pytest.approx(0.00555)
 
 
 def test_other_conditions_are_other_records() -> None:
     found = summary(
-        measurement("s1", 2, 1e5, {"rate_per_s": 0.0055}),
-        measurement("s2", 3, 2e5, {"rate_per_s": 0.055}),
+        measurement("s1", 2, 1e5, {"rate_per_s": 0.0055}, speed=1e-4),
+        measurement("s2", 3, 2e5, {"rate_per_s": 0.055}, speed=1e-3),
         measurement("s3", 4, 3e5),
     )
     assert sorted(r.quantity.value for r in found.records) == [1e5, 2e5, 3e5]
