@@ -196,7 +196,9 @@ def red_part(png: Path) -> float:
 def test_a_tall_figure_is_marked_on_each_of_its_pages(tmp_path: Path) -> None:
     bars = [bar(f"silicone-{i}", 100.0 + i, 5.0) for i in range(50)]
     svg, _ = moduli_figure(tmp_path, "tall", "moduli", bars, True)
-    assert svg_texts(svg).count("SYNTHETIC DATA") >= 3
+    texts = svg_texts(svg)
+    assert texts.count("SYNTHETIC DATA") >= 3
+    assert {f"silicone-{i}" for i in range(50)} <= set(texts)
 
 
 @pytest.mark.parametrize("n", [1, 50])
@@ -211,11 +213,9 @@ def test_any_number_of_specimens_leaves_the_data_their_room(tmp_path: Path, n: i
     assert height >= 3.9
 
 
-@pytest.mark.parametrize("n", [1, 50])
-def test_any_number_of_materials_can_be_drawn(tmp_path: Path, n: int) -> None:
-    bars = [bar(f"silicone-{i}", 10.0 * (i + 1), 1.0) for i in range(n)]
-    svg, _ = moduli_figure(tmp_path, "moduli", "moduli", bars, False)
-    assert {f"silicone-{i}" for i in range(n)} <= set(svg_texts(svg))
+def test_one_material_can_be_drawn(tmp_path: Path) -> None:
+    svg, _ = moduli_figure(tmp_path, "moduli", "moduli", phantoms()[:1], False)
+    assert {"ef50-0t", "159.6 (n = 10)"} <= set(svg_texts(svg))
 
 
 def test_curves_without_a_look_of_their_own_differ_in_colour_and_dash() -> None:

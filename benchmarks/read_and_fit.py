@@ -1,0 +1,297 @@
+"""How fast a curve is read and fitted with its uncertainty, beside what one would do otherwise.
+
+`python -m benchmarks.read_and_fit` generates files of three columns and lets four contenders work
+on them in turn: the project's own reader and technique; pandas with the textbook formula and its
+naive standard error; pandas with lmfit; and merely reading and hashing the bytes. It prints their
+times and ratios, the peak memory of the project's own way, and the time of `deamat all` when there
+is nothing to do.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import importlib
+import importlib.util
+import statistics
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.campaign import (
+    FORMS,
+    AREA_m2,
+    Curve,
+    DIAMETER_m,
+    HEIGHT_m,
+    SPEED_m_per_s,
+    find_curves,
+    write_campaign,
+)
+from benchmarks.timing import (
+    Row,
+    interleaved,
+    median_ratio,
+    own_peak_memory_MB,
+    stay_on_one_core,
+    table,
+    wall_times_s,
+    write_results,
+)
+from pipeline.core.instruments import Machine
+from pipeline.core.quantity import Quantity
+from pipeline.core.records import FloatArray, Specimen
+from pipeline.core.technique import Context, Technique
+from pipeline.formats.format import Format
+from pipeline.formats.rawfile import RawFile
+
+Fit = tuple[float, float]  # modulus and its standard uncertainty [Pa]
+Contender = Callable[[Curve], Fit | None]
+
+_WINDOW = 0.05
+_TOLERANCE = 0.01  # a contender that misses the truth by more has not done the work
+_FILES_A_PART = 25
+_TARGETS = {"pandas + OLS": 2.0, "pandas + lmfit": 10.0}
+_MEMORY_TARGET_MB = 250.0
+_NOTHING_TO_DO_TARGET_s = 0.15
+_DEAMAT = (sys.executable, "-c", "import sys; from pipeline.cli import main; sys.exit(main())")
+
+
+def ours() -> Contender:
+    """Detect, read and reduce with the project's own floors, as a run does it."""
+    # By name, so that the rivals can be timed where these floors do not import.
+    detect: Callable[[RawFile], Format] = importlib.import_module("pipeline.formats.detect").detect
+    techniques = importlib.import_module("pipeline.techniques").TECHNIQUES
+    technique: Technique = techniques["compression"]
+    context = Context(technique.config(), Machine(), needs={})
+
+    def fit(curve: Curve) -> Fit:
+        raw = RawFile(curve.path.name, curve.path.read_bytes())
+        recording = detect(raw).read(raw)
+        measurement = technique.reduce(_specimen(curve), recording, context)
+        for value in measurement.values:
+            if value.key == "compressive_modulus":
+                return value.quantity.value, value.quantity.standard_uncertainty
+        raise ValueError(f"{curve.path.name}: no modulus, {measurement.refusals}")
+
+    return fit
+
+
+def _specimen(curve: Curve) -> Specimen:
+    return Specimen(
+        id=curve.path.stem,
+        material=curve.material,
+        campaign="speed",
+        technique="compression",
+        file=curve.path.name,
+        format=None,
+        numbers={
+            "diameter_m": Quantity(DIAMETER_m, "m", 1e-5, 1e-5),
+            "height_m": Quantity(HEIGHT_m, "m", 1e-5, 1e-5),
+            "speed_m_per_s": Quantity(SPEED_m_per_s, "m/s"),
+        },
+        conditions={},
+        notes={},
+        register="speed/compression/specimens.csv",
+        line=2,
+    )
+
+
+def pandas_with_formula() -> Contender:
+    """Read with pandas and fit with the textbook formula and its naive standard error."""
+    window = _pandas_window()
+
+    def fit(curve: Curve) -> Fit:
+        x, y = window(curve)
+        dx = x - x.mean()
+        sxx = dx @ dx
+        slope = dx @ y / sxx
+        residuals = y - y.mean() - slope * dx
+        return float(slope), float(np.sqrt(residuals @ residuals / (len(x) - 2) / sxx))
+
+    return fit
+
+
+def pandas_with_lmfit() -> Contender:
+    """Read with pandas and fit with lmfit's linear model."""
+    from lmfit.models import LinearModel
+
+    window = _pandas_window()
+    model = LinearModel()
+
+    def fit(curve: Curve) -> Fit:
+        x, y = window(curve)
+        slope = model.fit(y, model.guess(y, x=x), x=x).params["slope"]
+        return float(slope.value), float(slope.stderr)
+
+    return fit
+
+
+def _pandas_window() -> Callable[[Curve], tuple[FloatArray, FloatArray]]:
+    import pandas as pd
+
+    def window(curve: Curve) -> tuple[FloatArray, FloatArray]:
+        form = curve.form
+        columns = list(form.columns)
+        frame = pd.read_csv(
+            curve.path, sep=form.separator, skiprows=form.skip, header=None, names=columns
+        )
+        strain = frame["travel"].to_numpy() * 1e-3 / HEIGHT_m
+        stress_Pa = frame["load"].to_numpy() / AREA_m2
+        inside = strain <= _WINDOW
+        return strain[inside], stress_Pa[inside]
+
+    return window
+
+
+def reading_and_hashing() -> Contender:
+    """Read the bytes and hash them: what nobody who keeps the origin of a number can save."""
+
+    def read(curve: Curve) -> None:
+        hashlib.sha256(curve.path.read_bytes()).hexdigest()
+
+    return read
+
+
+CONTENDERS: Mapping[str, Callable[[], Contender]] = {
+    "ours": ours,
+    "pandas + OLS": pandas_with_formula,
+    "pandas + lmfit": pandas_with_lmfit,
+    "read and hash": reading_and_hashing,
+}
+
+
+def worst_error(contender: Contender, curves: Sequence[Curve]) -> float:
+    """Give the largest relative distance from the true modulus.
+
+    Raises
+    ------
+    ValueError : it exceeds the tolerance: the contender does not do the work
+    """
+    fits = [(fit, curve.modulus_Pa) for curve in curves if (fit := contender(curve)) is not None]
+    worst = max((abs(fit[0] / truth - 1) for fit, truth in fits), default=0.0)
+    if worst > _TOLERANCE:
+        raise ValueError(f"a modulus is off by {100 * worst:.1f} %")
+    return worst
+
+
+def compare(curves: Sequence[Curve], names: Sequence[str], rounds: int) -> list[Row]:
+    """Time the contenders on the curves of each form; ratios are medians over the rounds."""
+    contenders = {name: CONTENDERS[name]() for name in names}
+    rows: list[Row] = []
+    for form in FORMS:
+        mine = [curve for curve in curves if curve.form is form]
+        errors = {name: worst_error(fit, mine[:_FILES_A_PART]) for name, fit in contenders.items()}
+        parts = [mine[i : i + _FILES_A_PART] for i in range(0, len(mine), _FILES_A_PART)]
+        workers = {name: _worker(contender) for name, contender in contenders.items()}
+        seconds = interleaved(workers, parts, rounds)
+        for name in names:
+            row: dict[str, str | float | int] = {"form": form.name, "contender": name}
+            row["files"], row["rounds"] = len(mine), rounds
+            row["ms per file"] = 1e3 * statistics.median(seconds[name]) / len(mine)
+            for other in ("ours", "read and hash"):
+                known = other in seconds
+                row[f"times {other}"] = (
+                    median_ratio(seconds[name], seconds[other]) if known else "-"
+                )
+            row["target"] = _TARGETS.get(name, "-")
+            row["worst error"] = errors[name]
+            rows.append(row)
+    return rows
+
+
+def _worker(contender: Contender) -> Callable[[Sequence[Curve]], None]:
+    def work(curves: Sequence[Curve]) -> None:
+        for curve in curves:
+            contender(curve)
+
+    return work
+
+
+def peak_memory_MB(folder: Path) -> float:
+    """Give the peak memory of a process that reads and fits every file of a campaign `[MB]`."""
+    command = [sys.executable, "-m", "benchmarks.read_and_fit", "--peak-memory-of", str(folder)]
+    return float(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+
+
+def nothing_to_do_s(raw: Path, processed: Path, times: int = 9) -> list[float]:
+    """Run `deamat all` once in earnest and then time it where nothing is left to do `[s]`."""
+    command = [*_DEAMAT, "all", "--raw", str(raw), "--processed", str(processed)]
+    first = subprocess.run(command, check=False, capture_output=True, text=True)
+    if first.returncode:
+        raise RuntimeError(f"deamat all ended with {first.returncode}: {first.stderr[-2000:]}")
+    return wall_times_s(command, times)
+
+
+def judged(rows: Sequence[Row], whole: Sequence[tuple[str, float, float]]) -> list[str]:
+    """Hold what was measured against its targets, one line each.
+
+    Parameters
+    ----------
+    rows : of `compare`; a rival's `times ours` shall reach its target
+    whole : name, value and upper limit of what is measured of a whole process
+    """
+    lines = []
+    for row in rows:
+        ratio, target = row["times ours"], row["target"]
+        if isinstance(ratio, float) and isinstance(target, float):
+            verdict = "met" if ratio >= target else "MISSED"
+            what = f"{row['form']}: ours is {ratio:.1f} times faster than {row['contender']}"
+            lines.append(f"{verdict}: {what}, wanted {target:g}")
+    for what, value, limit in whole:
+        verdict = "met" if value < limit else "MISSED"
+        lines.append(f"{verdict}: {what} {value:.3g}, wanted less than {limit:g}")
+    return lines
+
+
+def main() -> int:
+    """Measure, print, write CSV and JSON; the status says whether every target was met."""
+    options = _options()
+    stay_on_one_core()
+    if options.peak_memory_of is not None:
+        contender = ours()
+        for curve in find_curves(options.peak_memory_of):
+            contender(curve)
+        print(own_peak_memory_MB())
+        return 0
+    whole = []
+    with tempfile.TemporaryDirectory() as folder:
+        raw = Path(folder, "raw")
+        curves = write_campaign(raw / "speed", options.files, options.rows)
+        # First of all, while this process is small: see own_peak_memory_MB.
+        if "ours" in options.only:
+            memory = peak_memory_MB(raw / "speed")
+            whole.append(("peak memory [MB]", memory, _MEMORY_TARGET_MB))
+        rows = compare(curves, options.only, options.rounds)
+        print(table(rows))
+        write_results("read_and_fit", rows, ("numpy", "pandas", "lmfit"))
+        if importlib.util.find_spec("pipeline.cli") is not None and "ours" in options.only:
+            times = nothing_to_do_s(raw, Path(folder, "processed"))
+            what = "deamat all with nothing to do, median [s]"
+            whole.append((what, statistics.median(times), _NOTHING_TO_DO_TARGET_s))
+    lines = judged(rows, whole)
+    print(*lines, sep="\n")
+    if whole:
+        names = ("measured", "value", "less than")
+        write_results(
+            "read_and_fit_whole", [dict(zip(names, row, strict=True)) for row in whole], ("numpy",)
+        )
+    return int(any(line.startswith("MISSED") for line in lines))
+
+
+def _options() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.read_and_fit")
+    parser.add_argument("--files", type=int, default=1000)
+    parser.add_argument("--rows", type=int, default=2000, help="samples in each file")
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--only", nargs="+", choices=list(CONTENDERS), default=list(CONTENDERS))
+    parser.add_argument("--peak-memory-of", type=Path, metavar="CAMPAIGN", help=argparse.SUPPRESS)
+    return parser.parse_args()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,72 @@
+"""What the benchmark lets its contenders work on, and how it judges them. Nothing is timed here."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from benchmarks.campaign import AREA_m2, Curve, HEIGHT_m, find_curves, write_campaign
+from benchmarks.read_and_fit import Fit, judged, worst_error
+from benchmarks.timing import Row
+
+
+def plain_fit(curve: Curve) -> Fit:
+    form = curve.form
+    numbers = np.loadtxt(curve.path, delimiter=form.separator, skiprows=form.skip, ndmin=2)
+    columns = dict(zip(form.columns, numbers.T, strict=True))
+    slope = np.polyfit(columns["travel"] * 1e-3 / HEIGHT_m, columns["load"] / AREA_m2, 1)[0]
+    return float(slope), 0.0
+
+
+def test_the_files_hold_the_moduli_that_they_claim(tmp_path: Path) -> None:
+    curves = write_campaign(tmp_path, files=6, rows=400)
+    assert {curve.form.name for curve in curves} == {"bluehill", "mark10"}
+    assert worst_error(plain_fit, curves) < 0.005
+
+
+def test_a_contender_that_misses_the_truth_is_an_error(tmp_path: Path) -> None:
+    curves = write_campaign(tmp_path, files=2, rows=50)
+    with pytest.raises(ValueError, match=r"^a modulus is off by 50\.0 %$"):
+        worst_error(lambda curve: (1.5 * curve.modulus_Pa, 0.0), curves)
+
+
+def test_the_campaign_is_whole_and_says_that_it_is_synthetic(tmp_path: Path) -> None:
+    curves = write_campaign(tmp_path, files=4, rows=10)
+    assert "synthetic = true" in (tmp_path / "campaign.toml").read_text()
+    manifest = [
+        line.split("  ") for line in (tmp_path / "MANIFEST.sha256").read_text().splitlines()
+    ]
+    assert {path for _, path in manifest} == {
+        path.relative_to(tmp_path).as_posix()
+        for path in tmp_path.rglob("*")
+        if path.is_file() and path.name != "MANIFEST.sha256"
+    }
+    for digest, path in manifest:
+        assert hashlib.sha256((tmp_path / path).read_bytes()).hexdigest() == digest
+    register = (tmp_path / "compression" / "specimens.csv").read_text().splitlines()
+    named = {line.split(",")[2] for line in register[1:]}
+    assert named == {c.path.relative_to(tmp_path / "compression").as_posix() for c in curves}
+
+
+def test_the_curves_of_a_campaign_are_found_again(tmp_path: Path) -> None:
+    written = write_campaign(tmp_path, files=4, rows=10)
+    found = find_curves(tmp_path)
+    assert {(c.path, c.material, c.form.name) for c in found} == {
+        (c.path, c.material, c.form.name) for c in written
+    }
+
+
+def test_targets_are_judged_both_ways() -> None:
+    rows: list[Row] = [
+        {"form": "mark10", "contender": "pandas + OLS", "times ours": 2.5, "target": 2.0},
+        {"form": "mark10", "contender": "pandas + lmfit", "times ours": 8.0, "target": 10.0},
+        {"form": "mark10", "contender": "ours", "times ours": 1.0, "target": "-"},
+    ]
+    assert judged(rows, [("peak memory [MB]", 300.0, 250.0)]) == [
+        "met: mark10: ours is 2.5 times faster than pandas + OLS, wanted 2",
+        "MISSED: mark10: ours is 8.0 times faster than pandas + lmfit, wanted 10",
+        "MISSED: peak memory [MB] 300, wanted less than 250",
+    ]
