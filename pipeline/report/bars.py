@@ -81,7 +81,7 @@ def _height_of(material: str, bars: Sequence[ModulusBar]) -> float:
 
 def _unit(bars: Sequence[ModulusBar]) -> str:
     values = [abs(bar.value_Pa) for bar in bars if bar.value_Pa is not None]
-    return "MPa" if values and min(values) >= 1e5 else "kPa"
+    return "MPa" if values and min(values) >= 1e6 else "kPa"
 
 
 def _ends(bar: ModulusBar, unit: str) -> list[float]:

@@ -382,3 +382,11 @@ def test_a_legend_among_the_data_stays_only_if_it_is_small(entries: int, inside:
         place_legend(figure, axes)
         assert (axes.get_legend() is not None) is inside
         assert (len(figure.legends) == 0) is inside
+
+
+@pytest.mark.parametrize(("lowest_kPa", "unit"), [(159.6, "kPa"), (999.0, "kPa"), (1200.0, "MPa")])
+def test_the_unit_suits_the_softest_material(tmp_path: Path, lowest_kPa: float, unit: str) -> None:
+    bars = [bar("soft", lowest_kPa, 10.0), bar("stiff", 3000.0, 100.0)]
+    svg, _ = moduli_figure(tmp_path, "moduli", "moduli", bars, False)
+    assert f"modulus [{unit}]; whiskers: 95 % confidence interval" in svg_texts(svg)
+    assert ("3000 (n = 3)" if unit == "kPa" else "3.00 (n = 3)") in svg_texts(svg)
