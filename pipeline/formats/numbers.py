@@ -90,7 +90,7 @@ def _parse(block: bytes, columns: int, dialect: Dialect) -> FloatArray | None:
     else:
         commas = bytes.maketrans(decimal + delimiter + b"\n", b".,,")
         text = b"[" + block.translate(commas) + b"]"
-    if b"+" in text and b"+-" not in text:  # JSON knows no leading plus
+    if b"+" in text and not (b"+-" in text or b"+ " in text):  # JSON knows no leading plus
         text = text.replace(b",+", b",").replace(b"[+", b"[")
     try:
         parsed = simdjson.Parser().parse(text)

@@ -10,7 +10,7 @@ import numpy as np
 from pipeline.core.errors import RawFileError
 from pipeline.core.records import Flag, FloatArray, Recording, Source
 from pipeline.core.units import UnknownUnit, si_factor
-from pipeline.formats.cells import Dialect
+from pipeline.formats.cells import Dialect, looks_numeric
 from pipeline.formats.documentation import contradictions
 from pipeline.formats.header import Layout
 from pipeline.formats.numbers import read_block
@@ -67,6 +67,7 @@ def read_table(
     RawFileError : a column without a unit, with an unknown one, or with an already used label;
         or rows that are not numbers for certain
     """
+    _refuse_rows_above(file, layout, reader.dialect.delimiter)
     _refuse_twins(file, layout, tuple(label.casefold() for label in layout.labels))
     units, written, flags = _units(file, layout, reader, header_units or {})
     conversions = [_conversion(file, layout, column, unit) for column, unit in enumerate(units)]
@@ -91,6 +92,19 @@ def read_table(
     return Recording(columns, metadata, written, source, tuple(flags))
 
 
+def _refuse_rows_above(file: RawFile, layout: Layout, delimiter: str) -> None:
+    """Refuse a second table: what stands above the labels is kept as text, so no rows may."""
+    for at, line in enumerate(file.head[: layout.names]):
+        if delimiter in line and all(map(looks_numeric, line.split(delimiter))):
+            raise RawFileError(
+                file.path,
+                "a row of numbers above the labels",
+                line=at + 1,
+                value=line,
+                mend="one file holds one run: export each run to a file of its own",
+            )
+
+
 def _refuse_twins(file: RawFile, layout: Layout, names: tuple[str, ...]) -> None:
     if len(set(names)) < len(names):
         twin = next(column for column, name in enumerate(names) if name in names[:column])
@@ -112,33 +126,37 @@ def row_flags(rows: FloatArray, names: tuple[str, ...], first_line: int) -> list
     rows : shape (rows, columns), units as written
     first_line : of the first row, counted from 1
     """
-    flags = []
     lead = names.index("time_s") if "time_s" in names else 0
-    same = rows[1:, lead] == rows[:-1, lead]
-    if same.any():
-        same &= (rows[1:] == rows[:-1]).all(axis=1)
-        repeats = np.flatnonzero(same)
-        if repeats.size:
-            flags.append(
-                Flag(
-                    "identical-rows",
-                    f"{repeats.size} row{'s' * (repeats.size > 1)} repeat the row before in every "
-                    f"column, first in line {repeats[0] + 1 + first_line}; none was dropped",
-                )
-            )
+    flags = _repeats(rows, lead, first_line)
     if "time_s" in names:
-        time = rows[:, lead]
-        back = np.flatnonzero(time[1:] < time[:-1])
-        if back.size:
-            row = int(back[0])
-            flags.append(
-                Flag(
-                    "time-not-increasing",
-                    f"time goes back {back.size} time{'s' * (back.size > 1)}, first in line "
-                    f"{row + 1 + first_line} (from {time[row]:g} to {time[row + 1]:g} as written)",
-                )
-            )
+        flags += _steps_back(rows[:, lead], first_line)
     return flags
+
+
+def _repeats(rows: FloatArray, lead: int, first_line: int) -> list[Flag]:
+    same = rows[1:, lead] == rows[:-1, lead]  # one column first: it rules out nearly all rows
+    if not same.any():
+        return []
+    repeats = np.flatnonzero(same & (rows[1:] == rows[:-1]).all(axis=1))
+    if not repeats.size:
+        return []
+    detail = (
+        f"rows equal to the row before in every column: {repeats.size}, the first in line "
+        f"{repeats[0] + 1 + first_line}; none was dropped"
+    )
+    return [Flag("identical-rows", detail)]
+
+
+def _steps_back(time: FloatArray, first_line: int) -> list[Flag]:
+    back = np.flatnonzero(time[1:] < time[:-1])
+    if not back.size:
+        return []
+    row = int(back[0])
+    detail = (
+        f"steps back in time: {back.size}, the first in line {row + 1 + first_line} "
+        f"(from {time[row]:g} to {time[row + 1]:g} as written)"
+    )
+    return [Flag("time-not-increasing", detail)]
 
 
 def _units(

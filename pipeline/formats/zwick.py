@@ -40,10 +40,13 @@ _READER = Reader("zwick", 1, Dialect(","))
 
 
 def _layout(head: list[str]) -> Layout | None:
-    quoted = 0
-    while quoted < len(head) and head[quoted].startswith('"'):
-        quoted += 1
-    layout = two_row_layout(head, ",", quoted - 2)
+    rows = 0
+    for at, line in enumerate(head):
+        if line.startswith('"'):
+            rows = at + 1
+        elif line.strip():
+            break
+    layout = two_row_layout(head, ",", rows - 2)
     if layout is None or any('"(' in line for line in head[layout.names : layout.rows]):
         return None  # bracketed units are Bluehill's
     return layout

@@ -1,0 +1,117 @@
+"""Exactly one format recognises a file, or the file is refused with what was found."""
+
+from __future__ import annotations
+
+import importlib
+import re
+from pathlib import Path
+
+import pytest
+
+from pipeline import formats
+from pipeline.core.errors import ConfigError, RawFileError
+from pipeline.formats import FORMATS, detect
+from pipeline.formats.format import Format
+from pipeline.formats.rawfile import RawFile
+from tests.formats.samples import BY_NAME, SAMPLES, Sample
+from tests.formats.test_good_files import every_sample
+
+NAMES = "bluehill, mark10, mts, nexygen, phantom, soro, zwick"
+
+
+def refused(data: bytes) -> str:
+    with pytest.raises(RawFileError) as caught:
+        detect.detect(RawFile("x", data))
+    return str(caught.value)
+
+
+@every_sample
+def test_no_other_format_claims_a_file(sample: Sample) -> None:
+    head = RawFile(sample.file, sample.data).head
+    assert [form.name for form in FORMATS if form.recognises(head)] == [sample.format]
+
+
+def test_every_format_has_a_sample() -> None:
+    assert [form.name for form in FORMATS] == sorted(BY_NAME)
+    assert len(SAMPLES) == len(FORMATS)
+
+
+def test_an_unknown_file_is_described() -> None:
+    assert refused(b"a;b;c\n1;2;3\n4;5;6\n") == (
+        f"x, line 1: no format recognises this file; there are {NAMES} (utf-8, probably "
+        "semicolon-separated with 3 columns) (found 'a;b;c'); name the format in the register's "
+        "`format` column, or export in one of these forms"
+    )
+
+
+def test_plain_prose_has_no_delimiter() -> None:
+    assert "(utf-8, no delimiter) (found 'Dear colleague')" in refused(b"Dear colleague\n")
+
+
+@pytest.mark.parametrize("data", [b"", b"\n \n", b"\xef\xbb\xbf", "\n".encode("utf-16")])
+def test_an_empty_file_is_refused(data: bytes) -> None:
+    assert refused(data) == "x: the file is empty; export the file again"
+
+
+def test_two_formats_that_match_are_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    greedy = Format("greedy", 1, "anything", lambda head: bool(head), FORMATS[0].read)
+    monkeypatch.setattr(detect, "FORMATS", (*FORMATS, greedy))
+    assert "several formats recognise this file: phantom, greedy" in refused(
+        BY_NAME["phantom"].data
+    )
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Depth (nm)\tLoad (uN)\tTime (s)\n-1.5\t0.2\t0.1\n",  # an indenter's
+        "Point;Shear Rate (1/s);Viscosity (mPa.s)\n1;0.1;500\n",  # a rheometer's
+        "time_s,ch1_V,ch2_V\n0.0,0.1,0.2\n",  # a logger's
+    ],
+)
+def test_other_instruments_are_left_alone(text: str) -> None:
+    assert "no format recognises this file" in refused(text.encode())
+
+
+def test_a_format_can_be_named() -> None:
+    assert [detect.by_name(form.name) for form in FORMATS] == list(FORMATS)
+
+
+def test_an_unknown_name_is_refused_with_the_nearest() -> None:
+    with pytest.raises(ConfigError) as caught:
+        detect.by_name("bluhill")
+    assert str(caught.value) == (
+        f"there is no format 'bluhill'; there are {NAMES}; did you mean bluehill?"
+    )
+
+
+@pytest.mark.parametrize("form", FORMATS, ids=lambda form: form.name)
+def test_every_reader_documents_itself_under_the_same_headings(form: Format) -> None:
+    module = importlib.import_module(f"pipeline.formats.{form.name}")
+    assert module.FORMAT is form
+    headings = re.findall(r"^(\w+)\n-+\n\S", module.__doc__ or "", re.MULTILINE)
+    assert headings == ["Usage", "Format", "Uncertainties", "Metadata"]
+    assert form.version >= 1
+    assert form.title
+
+
+def test_the_list_holds_every_reader_there_is() -> None:
+    folder = Path(formats.__file__).parent
+    readers = {
+        path.stem
+        for path in folder.glob("*.py")
+        if re.search(r"^FORMAT = Format\(", path.read_text(), re.MULTILINE)
+    }
+    assert readers == {form.name for form in FORMATS}
+
+
+def test_the_head_is_short_and_knows_no_line_ends() -> None:
+    file = RawFile("x", b"a\r\nb\n" + b"1,2\r\n" * 5000)
+    assert len(file.head) == 64
+    assert file.head[:3] == ["a", "b", "1,2"]
+
+
+def test_offsets_find_the_line() -> None:
+    file = RawFile("x", b"\xef\xbb\xbfab\nc\n")
+    assert [file.offset(line) for line in range(4)] == [0, 3, 5, 5]
+    assert file.body[file.offset(1) :] == b"c\n"
