@@ -1,0 +1,134 @@
+"""What changed is redone, and nothing else; `explain` says why."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from pipeline.run import explain
+from pipeline.run.folders import Folders
+from pipeline.run.register import register
+from tests.run.conftest import curves, run
+
+_SOFT = "sylgard-182-40to1"
+_OUTPUTS = {"database", "curves", "audit"}
+
+
+def _redone(folders: Folders) -> set[str]:
+    """Stage and subject of everything that a run redid; `explain` must have foretold it."""
+    foretold = {line.partition(": ")[0] for line in explain(folders)["now"]}
+    done = {line.partition(": ")[0] for line in run(folders)["redone"]}
+    assert foretold == done
+    assert explain(folders)["now"] == []
+    return done
+
+
+def _stages(done: set[str]) -> dict[str, int]:
+    return {
+        stage: sum(d.startswith(stage + " ") for d in done)
+        for stage in ("measurement", "summary", "card", "figure")
+    }
+
+
+def _touch_a_number(path: Path) -> None:
+    """Change the last digit of one load in the middle of a file."""
+    lines = path.read_bytes().split(b"\r\n")
+    cells = lines[200].split(b"\t")
+    cells[1] = cells[1][:-1] + (b"1" if cells[1].endswith(b"0") else b"0")
+    lines[200] = b"\t".join(cells)
+    path.write_bytes(b"\r\n".join(lines))
+
+
+def test_nothing_to_do(folders: Folders) -> None:
+    first = run(folders)
+    assert not first["nothing_to_do"]
+    again = run(folders)
+    assert again["nothing_to_do"]
+    assert {**again, "nothing_to_do": False} == first
+
+
+def test_a_touched_file_is_no_change(folders: Folders) -> None:
+    run(folders)
+    os.utime(curves(folders)[0], ns=(1, 1))
+    assert _redone(folders) == set()
+
+
+def test_a_changed_file(folders: Folders) -> None:
+    run(folders)
+    path = curves(folders)[-1]
+    _touch_a_number(path)
+    register(folders.raw, "demo", accept=True)
+    done = _redone(folders)
+    assert _stages(done) == {"measurement": 1, "summary": 1, "card": 1, "figure": 2}
+    assert {d.partition(" ")[0] for d in done} >= _OUTPUTS
+    assert f"card {_SOFT}" in done
+    assert run(folders)["exit_code"] == 0
+
+
+def test_a_removed_row_and_file(folders: Folders) -> None:
+    run(folders)
+    table = folders.raw / "demo" / "compression" / "specimens.csv"
+    table.write_text("".join(table.read_text().splitlines(keepends=True)[:-1]))
+    curves(folders)[-1].unlink()
+    register(folders.raw, "demo", accept=True)
+    done = _redone(folders)
+    assert _stages(done) == {"measurement": 1, "summary": 1, "card": 1, "figure": 2}
+
+
+def test_a_changed_register_row(folders: Folders) -> None:
+    run(folders)
+    table = folders.raw / "demo" / "compression" / "specimens.csv"
+    lines = table.read_text().splitlines(keepends=True)
+    lines[1] = lines[1].replace(",12,", ",12.5,", 1)
+    table.write_text("".join(lines))
+    register(folders.raw, "demo", accept=True)
+    assert _stages(_redone(folders))["measurement"] == 1
+
+
+def test_a_changed_setting_redoes_its_technique_only(folders: Folders) -> None:
+    run(folders)
+    (folders.config / "methods.toml").write_text("[tension]\nmin_samples = 12\n")
+    assert {d.partition(" ")[0] for d in _redone(folders)} == {"database"}  # its provenance
+    (folders.config / "methods.toml").write_text("[compression]\nmin_samples = 12\n")
+    assert _stages(_redone(folders)) == {"measurement": 6, "summary": 2, "card": 2, "figure": 3}
+
+
+def test_a_changed_name_redoes_the_card_and_its_figures(folders: Folders) -> None:
+    run(folders)
+    text = (folders.config / "materials.toml").read_text()
+    (folders.config / "materials.toml").write_text(text.replace("182 (40:1)", "182 (forty)"))
+    done = _redone(folders)
+    assert _stages(done) == {"measurement": 0, "summary": 0, "card": 1, "figure": 2}
+
+
+def test_a_changed_stage_version(folders: Folders, monkeypatch: pytest.MonkeyPatch) -> None:
+    import dataclasses
+
+    from pipeline.techniques import TECHNIQUES
+
+    run(folders)
+    raised = dataclasses.replace(TECHNIQUES["compression"], version=1000)
+    monkeypatch.setitem(TECHNIQUES, "compression", raised)
+    os.utime(curves(folders)[0], ns=(1, 1))  # the declared versions are read again when code changed
+    why = explain(folders)["now"]
+    assert sum("technique changed" in line for line in why if "measurement" in line) == 6
+
+
+def test_a_deleted_output_is_made_again(folders: Folders) -> None:
+    run(folders)
+    card = folders.processed / "cards" / f"{_SOFT}.json"
+    before = card.read_bytes()
+    card.unlink()
+    assert {d for d in run(folders)["redone"]} == {f"card {_SOFT}: its output is not as it was"}
+    assert card.read_bytes() == before
+
+
+def test_an_edited_output_is_made_again(folders: Folders) -> None:
+    run(folders)
+    card = folders.processed / "cards" / f"{_SOFT}.json"
+    before = card.read_bytes()
+    card.write_bytes(before.replace(b"Pa", b"kg"))
+    run(folders)
+    assert card.read_bytes() == before

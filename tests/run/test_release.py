@@ -1,0 +1,87 @@
+"""A release appears whole or not at all, with the same bytes everywhere."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+import pipeline.run.publish
+from pipeline import open_database
+from pipeline.core.errors import ConfigError
+from pipeline.run.folders import Folders
+from pipeline.run.register import register
+from pipeline.run.state import State
+from tests.run.conftest import curves, run
+
+
+def _bytes(processed: Path) -> dict[str, bytes]:
+    place = (processed / "releases" / "current").resolve()
+    return {str(p.relative_to(place)): p.read_bytes() for p in place.rglob("*") if p.is_file()}
+
+
+def test_two_runs_in_two_places_give_the_same_bytes(folders: Folders, tmp_path: Path) -> None:
+    first = run(folders)
+    other = Folders(tmp_path / "elsewhere" / "raw", folders.config, tmp_path / "elsewhere" / "out")
+    shutil.copytree(folders.raw, other.raw)
+    second = run(other)
+    assert second["release"] == first["release"]
+    assert _bytes(other.processed) == _bytes(folders.processed)
+
+
+def test_going_back_gives_the_first_release_again(folders: Folders) -> None:
+    first, before = run(folders)["release"], _bytes(folders.processed)
+    path = curves(folders)[0]
+    kept = path.read_bytes()
+    path.write_bytes(kept.replace(b"0.2", b"0.3", 1))
+    register(folders.raw, "demo", accept=True)
+    assert run(folders)["release"] != first
+    path.write_bytes(kept)
+    register(folders.raw, "demo", accept=True)
+    assert run(folders)["release"] == first
+    assert _bytes(folders.processed) == before
+
+
+def test_a_run_that_dies_leaves_the_last_release_readable(
+    folders: Folders, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run(folders)
+    before = _bytes(folders.processed)
+    path = curves(folders)[0]
+    path.write_bytes(path.read_bytes().replace(b"0.2", b"0.3", 1))
+    register(folders.raw, "demo", accept=True)
+
+    def die(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(pipeline.run.publish, "draw_all", die)
+        with pytest.raises(KeyboardInterrupt):
+            run(folders)
+    assert _bytes(folders.processed) == before
+    with open_database(folders.processed) as database:
+        assert "compressive_modulus" in database["sylgard-182-10to1"]
+    assert run(folders)["exit_code"] == 0
+    assert _bytes(folders.processed) != before
+
+
+def test_a_damaged_state_costs_time_not_results(folders: Folders) -> None:
+    release = run(folders)["release"]
+    (folders.processed / "state.sqlite").write_bytes(b"this is no database" * 100)
+    assert run(folders)["release"] == release
+
+
+def test_a_second_run_in_the_same_folder_is_turned_away(folders: Folders) -> None:
+    with (
+        State(folders.processed),
+        pytest.raises(ConfigError, match=r"another run is working in .*; wait for it"),
+    ):
+        run(folders)
+
+
+def test_synthetic_is_said_on_every_output(folders: Folders) -> None:
+    run(folders)
+    for name, data in _bytes(folders.processed).items():
+        if name.endswith((".json", ".svg")) and not name.startswith("audit"):
+            assert b"ynthetic" in data or b"SYNTHETIC" in data, name
