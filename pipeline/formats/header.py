@@ -15,6 +15,7 @@ from pipeline.formats.quantities import meaning
 
 _LABEL_WITH_UNIT = re.compile(r"(.*\S)\s*(?:\(([^()]*)\)|\[([^\[\]]*)\])")
 _CELL = {mark: re.compile(rf'(?:^|{mark}) *("[^"]*"|[^{mark}]*)') for mark in ",;\t"}
+_ROW_STARTS = frozenset("0123456789+-.")
 _UNIT = re.compile(r"\((.*)\)|\[(.*)\]")
 
 
@@ -60,6 +61,8 @@ def inline_layout(head: Sequence[str], delimiter: str) -> Layout | None:
     """
     best: Layout | None = None
     for at, line in enumerate(head):
+        if best and line[:1] in _ROW_STARTS:
+            break
         if delimiter not in line or not ("(" in line or "[" in line):
             continue
         cells = split(line, delimiter)
@@ -81,7 +84,7 @@ def inline_layout(head: Sequence[str], delimiter: str) -> Layout | None:
 def units_row(head: Sequence[str], delimiter: str, *, bare: bool = False) -> int | None:
     """Find the first line that holds units alone: `(s),(mm),(N)`, or `s`, `mm`, `N` if `bare`."""
     for at, line in enumerate(head):
-        if delimiter not in line or line[0] in "0123456789+-.":
+        if delimiter not in line or line[0] in _ROW_STARTS:
             continue
         cells = split(line, delimiter)
         if all(map(_UNIT.fullmatch, cells)) or (bare and all(map(known, cells))):

@@ -81,9 +81,9 @@ def parse(block: bytes, columns: int, dialect: Dialect) -> FloatArray | None:
 
 def _parse(block: bytes, columns: int, dialect: Dialect) -> FloatArray | None:
     delimiter, decimal = dialect.delimiter.encode(), dialect.decimal.encode()
-    rows = block.count(b"\n") + 1
-    separators = (delimiter * (columns - 1) + b"\n") * rows
-    if block.translate(None, _DIGITS + decimal) != separators[:-1]:
+    separators = block.translate(None, _DIGITS + decimal) + b"\n"
+    rows = len(separators) // columns
+    if separators != (delimiter * (columns - 1) + b"\n") * rows:
         return None
     if delimiter == b",":
         text = b"[" + block.replace(b"\n", b",") + b"]"

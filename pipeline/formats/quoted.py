@@ -6,8 +6,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 _QUOTE, _COMMA, _LINE = b'",\n'
-_STARTS = np.frombuffer(b'",+-', dtype=np.uint8)  # what may stand before the digits of a group
 _MARGIN = b"\n" * 5  # so that no look to the left or right leaves the text
+
+
+def _table(characters: bytes) -> NDArray[np.bool_]:
+    table = np.zeros(256, dtype=np.bool_)
+    table[list(characters)] = True
+    return table
+
+
+_DIGIT = _table(b"0123456789")
+_EDGE = _table(b"\t\n")
+_START = _table(b'",+-')  # what may stand before the digits of a group
 
 
 def unquote(block: bytes) -> bytes | None:
@@ -24,33 +34,32 @@ def unquote(block: bytes) -> bytes | None:
     """
     if b"\t" in block:
         return None
-    text = np.frombuffer(_MARGIN + block + _MARGIN, dtype=np.uint8)
+    text = np.frombuffer(_MARGIN + block + _MARGIN, dtype=np.uint8).copy()
     quote = text == _QUOTE
-    inside = (np.cumsum(quote, dtype=np.uint8) & 1).astype(bool)  # from an opening quote on
-    if inside[-1] or (inside & (text == _LINE)).any():
+    inside = np.logical_xor.accumulate(quote)  # from an opening quote on
+    if inside[-1] or inside[np.flatnonzero(text == _LINE)].any():
         return None
     comma = text == _COMMA
-    opens, closes = np.flatnonzero(quote & inside), np.flatnonzero(quote & ~inside)
-    before, after = opens - 1, closes + 1
-    edges = (comma | (text == _LINE)) & ~inside
-    if not (edges[before].all() and edges[after].all()):
+    grouping = np.flatnonzero(comma & inside)
+    text[comma & ~inside] = ord("\t")
+    quotes = np.flatnonzero(quote)
+    opens, closes = quotes[::2], quotes[1::2]
+    if not (_EDGE[text[opens - 1]].all() and _EDGE[text[closes + 1]].all()):
         return None
-    grouping = comma & inside
-    if grouping.any() and not _groups_of_three(text, np.flatnonzero(grouping)):
-        return None
-    plain = text.copy()
-    plain[comma & ~inside] = ord("\t")
-    kept = plain[~(quote | grouping)][len(_MARGIN) : -len(_MARGIN)]
-    return bytes(kept)
+    if grouping.size:
+        if b"e" in block or b"E" in block:
+            return None  # a sign before a group could belong to an exponent
+        if not _groups_of_three(text, grouping):
+            return None
+    text[grouping] = _QUOTE
+    return text[len(_MARGIN) : -len(_MARGIN)].tobytes().translate(None, b'"')
 
 
 def _groups_of_three(text: NDArray[np.uint8], at: NDArray[np.intp]) -> bool:
     """Say whether every comma stands between one to three digits and exactly three."""
-    if np.isin(text, np.frombuffer(b"eE", dtype=np.uint8)).any():
-        return False  # a sign before a group could belong to an exponent
-    digit = (text >= ord("0")) & (text <= ord("9"))
-    start = np.isin(text, _STARTS)
-    behind = digit[at + 1] & digit[at + 2] & digit[at + 3] & ~digit[at + 4]
-    three = digit[at - 3] & start[at - 4]
-    ahead = digit[at - 1] & (start[at - 2] | (digit[at - 2] & (start[at - 3] | three)))
-    return bool((behind & ahead).all())
+    one, two, three = (_DIGIT[text[at - step]] for step in (1, 2, 3))
+    ahead = one & (
+        _START[text[at - 2]] | (two & (_START[text[at - 3]] | (three & _START[text[at - 4]])))
+    )
+    behind = _DIGIT[text[at + 1]] & _DIGIT[text[at + 2]] & _DIGIT[text[at + 3]]
+    return bool((ahead & behind & ~_DIGIT[text[at + 4]]).all())

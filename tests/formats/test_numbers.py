@@ -206,3 +206,9 @@ def test_a_large_block_is_read_in_parts() -> None:
 def test_a_line_longer_than_any_part_is_not_lost() -> None:
     text = b"1," + b"0" * (1 << 20) + b".5\n2,3\n"
     assert read_block(RawFile("x", text), 0, 2, COMMA).tolist() == [[1.0, 0.5], [2.0, 3.0]]
+
+
+def test_a_line_end_inside_quotes_is_refused() -> None:
+    assert unquote(b'"1\n2"') is None
+    with pytest.raises(RawFileError):
+        read_block(RawFile("x", b'"1\n2"\n'), 0, 1, QUOTED)

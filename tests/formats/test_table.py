@@ -118,11 +118,15 @@ def test_two_columns_of_one_label_are_refused() -> None:
 
 
 def test_rows_above_the_labels_are_refused() -> None:
-    message = refused("Time (s),Load (N)", "0,1", "Time (s),Load (N),Compression (mm)", "0,1,2")
-    assert message == (
-        "x.csv, line 2: a row of numbers above the labels (found '0,1'); "
+    assert refused("0,1", "Time (s),Load (N)", "0,1") == (
+        "x.csv, line 1: a row of numbers above the labels (found '0,1'); "
         "one file holds one run: export each run to a file of its own"
     )
+
+
+def test_a_wider_table_below_the_first_is_refused() -> None:
+    message = refused("Time (s),Load (N)", "0,1", "Time (s),Load (N),Compression (mm)", "0,1,2")
+    assert message.startswith("x.csv, line 3: a text row between the rows")
 
 
 def test_header_and_column_that_contradict_each_other_are_flagged() -> None:
