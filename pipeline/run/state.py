@@ -66,7 +66,10 @@ class State:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self.db.commit()
+        if kind is None:
+            self.db.commit()
+        else:  # what was noted of outputs that were never published must not be believed
+            self.db.rollback()
         self.db.close()
         self._lock.close()
 

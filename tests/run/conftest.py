@@ -9,7 +9,9 @@ from typing import Any
 
 import pytest
 
+import pipeline.run.draw
 from pipeline.run import run_all
+from pipeline.run.draw import FigureJob
 from pipeline.run.folders import Folders
 from pipeline.run.register import register
 
@@ -30,6 +32,19 @@ def folders(tmp_path: Path) -> Folders:
     shutil.copytree(ROOT / "config", made.config)
     small_campaign(made.raw / "demo")
     return made
+
+
+@pytest.fixture
+def quick_figures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Write words instead of drawing: for tests that are not about figures."""
+
+    def words(folder: Path, job: FigureJob) -> None:
+        for name in job.files:
+            path = folder.parent / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(f"SYNTHETIC {job.title} {len(job.measurements)}")
+
+    monkeypatch.setattr(pipeline.run.draw, "draw_one", words)
 
 
 def small_campaign(folder: Path) -> None:
@@ -55,4 +70,6 @@ def small_campaign(folder: Path) -> None:
 
 def curves(folders: Folders) -> list[Path]:
     """The data files of the small campaign, in order."""
-    return sorted(p for p in (folders.raw / "demo" / "compression").rglob("*") if p.suffix == ".txt")
+    return sorted(
+        p for p in (folders.raw / "demo" / "compression").rglob("*") if p.suffix == ".txt"
+    )

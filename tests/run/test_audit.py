@@ -13,6 +13,8 @@ from pipeline.run.folders import Folders
 from pipeline.run.register import register
 from tests.run.conftest import curves, run
 
+pytestmark = pytest.mark.usefixtures("quick_figures")
+
 
 def _fate(folders: Folders, path: Path) -> dict[str, object]:
     name = path.relative_to(folders.raw).as_posix()
@@ -21,7 +23,9 @@ def _fate(folders: Folders, path: Path) -> dict[str, object]:
 
 
 def _snapshot(folder: Path) -> dict[str, str]:
-    return {str(p): hashlib.sha256(p.read_bytes()).hexdigest() for p in folder.rglob("*") if p.is_file()}
+    return {
+        str(p): hashlib.sha256(p.read_bytes()).hexdigest() for p in folder.rglob("*") if p.is_file()
+    }
 
 
 def test_all_is_well(folders: Folders) -> None:

@@ -11,6 +11,8 @@ from pipeline.run.folders import Folders
 from pipeline.run.register import register
 from tests.run.conftest import curves, run
 
+pytestmark = pytest.mark.usefixtures("quick_figures")
+
 _LINE = 120
 
 

@@ -12,6 +12,8 @@ from pipeline.run.folders import Folders
 from pipeline.run.register import register
 from tests.run.conftest import curves, run
 
+pytestmark = pytest.mark.usefixtures("quick_figures")
+
 _SOFT = "sylgard-182-40to1"
 _OUTPUTS = {"database", "curves", "audit"}
 
@@ -111,7 +113,9 @@ def test_a_changed_stage_version(folders: Folders, monkeypatch: pytest.MonkeyPat
     run(folders)
     raised = dataclasses.replace(TECHNIQUES["compression"], version=1000)
     monkeypatch.setitem(TECHNIQUES, "compression", raised)
-    os.utime(curves(folders)[0], ns=(1, 1))  # the declared versions are read again when code changed
+    os.utime(
+        curves(folders)[0], ns=(1, 1)
+    )  # the declared versions are read again when code changed
     why = explain(folders)["now"]
     assert sum("technique changed" in line for line in why if "measurement" in line) == 6
 
@@ -121,7 +125,7 @@ def test_a_deleted_output_is_made_again(folders: Folders) -> None:
     card = folders.processed / "cards" / f"{_SOFT}.json"
     before = card.read_bytes()
     card.unlink()
-    assert {d for d in run(folders)["redone"]} == {f"card {_SOFT}: its output is not as it was"}
+    assert set(run(folders)["redone"]) == {f"card {_SOFT}: its output is not as it was"}
     assert card.read_bytes() == before
 
 
