@@ -133,7 +133,7 @@ def notes(lines: Iterable[str], delimiter: str = "") -> dict[str, str]:
             key, value = key.rstrip(" :"), " ".join(cell for cell in rest if cell)
         else:
             key, _, value = (part.strip() for part in text.partition(":"))
-            if not value or not key[0].isalpha():
+            if not value or not key[:1].isalpha():
                 key, value = f"line {number}", text
         if value:
             kept[key] = f"{kept[key]}; {value}" if key in kept else value

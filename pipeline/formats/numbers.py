@@ -99,6 +99,8 @@ def _parse(block: bytes, columns: int, dialect: Dialect) -> FloatArray | None:
     if not isinstance(parsed, simdjson.Array):
         return None
     values: FloatArray = np.frombuffer(parsed.as_buffer(of_type="d"))
+    if values.size != rows * columns:  # one empty field leaves no number and no separator
+        return None
     if values.max() >= OVER_RANGE or values.min() <= -OVER_RANGE:
         return None
     if not values.all() and _has_integer_minus_zero(text):

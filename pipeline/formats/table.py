@@ -60,7 +60,7 @@ def read_table(
     Parameters
     ----------
     metadata : what the header says, as text
-    header_units : label in lower case to the unit that the header states for it
+    header_units : label to the unit that the header states for it
 
     Raises
     ------
@@ -74,8 +74,9 @@ def read_table(
     si_units = tuple(si_unit for si_unit, _, _ in conversions)
     names = assign(layout.labels, si_units)
     _refuse_twins(file, layout, names)
-    rows = read_block(file, layout.rows, len(names), reader.dialect)
-    flags += _kind_flags(layout, si_units) + row_flags(rows, names, layout.rows + 1)
+    first = _first_row(file, layout)
+    rows = read_block(file, first, len(names), reader.dialect)
+    flags += _kind_flags(layout, si_units) + row_flags(rows, names, first + 1)
     columns = {
         name: _to_si(rows[:, column], factor, offset)
         for column, (name, (_, factor, offset)) in enumerate(zip(names, conversions, strict=True))
@@ -83,13 +84,19 @@ def read_table(
     source = Source(
         path=file.path,
         sha256=file.sha256,
-        first_line=layout.rows + 1,
-        last_line=layout.rows + len(rows),
+        first_line=first + 1,
+        last_line=first + len(rows),
         encoding=file.encoding,
         reader=reader.name,
         reader_version=reader.version,
     )
     return Recording(columns, metadata, written, source, tuple(flags))
+
+
+def _first_row(file: RawFile, layout: Layout) -> int:
+    """Skip blank lines between the labels and the rows."""
+    below = range(layout.rows, len(file.head))
+    return next((at for at in below if file.head[at].strip()), layout.rows)
 
 
 def _refuse_rows_above(file: RawFile, layout: Layout, delimiter: str) -> None:

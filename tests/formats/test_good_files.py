@@ -81,6 +81,14 @@ def test_blank_lines_at_the_end_are_fine(sample: Sample, blank: str) -> None:
 
 
 @every_sample
+def test_blank_lines_above_the_rows_are_fine(sample: Sample) -> None:
+    rows = sample.lines[sample.first - 1 :]
+    recording = read(sample.raw([*sample.header, "", *rows]))
+    assert same(recording, sample.columns())
+    assert recording.source.first_line == sample.first + 1
+
+
+@every_sample
 def test_a_campaign_may_declare_that_files_end_open(sample: Sample) -> None:
     closed = sample.raw(sample.lines, end="")
     assert same(read(replace(closed, ends_open=True)), sample.columns())

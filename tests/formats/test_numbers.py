@@ -208,6 +208,11 @@ def test_a_line_longer_than_any_part_is_not_lost() -> None:
     assert read_block(RawFile("x", text), 0, 2, COMMA).tolist() == [[1.0, 0.5], [2.0, 3.0]]
 
 
+def test_one_empty_field_is_a_blank_cell() -> None:
+    with pytest.raises(RawFileError, match="x, line 1, column 1: a blank cell"):
+        read_block(RawFile("x", b'""\n'), 0, 1, QUOTED)
+
+
 def test_a_line_end_inside_quotes_is_refused() -> None:
     assert unquote(b'"1\n2"') is None
     with pytest.raises(RawFileError):
