@@ -184,10 +184,12 @@ def register(
 @click.option("--seed", type=int, required=True, help="same seed, same bytes")
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), required=True)
 def simulate(seed: int, out: Path) -> None:
-    """Write a SYNTHETIC campaign with known truth into --out (raw/ below it, truth beside)."""
+    """Write a SYNTHETIC campaign into --out, a folder for --raw; its truth into OUT.truth.json."""
     from pipeline.twin.campaign import simulate as simulate_campaign
 
-    click.echo(f"SYNTHETIC campaign written: {simulate_campaign(out, seed)}")
+    out = out.resolve()
+    truth = out.with_name(f"{out.name}.truth.json")
+    click.echo(f"SYNTHETIC campaign {simulate_campaign(out, seed, truth)}, its truth {truth}")
 
 
 def _pair(text: str) -> tuple[str, str]:
