@@ -86,7 +86,10 @@ def test_tensile_moduli_are_refused_with_counts(real: tuple[Folders, dict[str, A
 
 @pytest.mark.parametrize(
     ("key", "quantity", "factor"),
-    [("tensile_strength", "tensile strength", 1e6), ("elongation_at_break", "elongation at max stress", 1e-2)],
+    [
+        ("tensile_strength", "tensile strength", 1e6),
+        ("elongation_at_break", "elongation at max stress", 1e-2),
+    ],
 )
 def test_strength_and_elongation(
     real: tuple[Folders, dict[str, Any]], shared: Path, key: str, quantity: str, factor: float
