@@ -1,0 +1,241 @@
+"""Search for, finish and check a minimum of weighted nonlinear least squares."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from pipeline.core.errors import FitRefused
+from pipeline.estimators.double_double import FloatArray
+
+# Of the weighted Jacobian with its columns scaled to equal length: float arithmetic then still
+# leaves 6 digits in the parameters.
+CONDITION_LIMIT = 1e10
+GRADIENT_LIMIT = 1e-6
+_JACOBIAN_LIMIT = 0.01
+_TOLERANCE = 1e-15
+_MOST_STEPS = 30
+_EPSILON = float(np.finfo(np.float64).eps)
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """A model with its exact Jacobian, data and bounds; shapes as in `fit_nonlinear`."""
+
+    model: Callable[[FloatArray], FloatArray]
+    jacobian: Callable[[FloatArray], FloatArray]
+    y: FloatArray
+    sigma: FloatArray
+    lower: FloatArray
+    upper: FloatArray
+
+    def residuals(self, b: FloatArray) -> FloatArray:
+        """Weighted residuals (y - f(b)) / sigma, shape (n,); infinite where f has no value."""
+        with np.errstate(all="ignore"):
+            predicted = np.asarray(self.model(b), dtype=np.float64)
+        if predicted.shape != self.y.shape:
+            raise FitRefused(f"the model gives shape {predicted.shape} for {len(self.y)} points")
+        return (self.y - predicted) / self.sigma
+
+    def weighted_jacobian(self, b: FloatArray) -> FloatArray:
+        """J / sigma, shape (n, p)."""
+        with np.errstate(all="ignore"):
+            derivatives = np.asarray(self.jacobian(b), dtype=np.float64)
+        if derivatives.shape != (len(self.y), len(b)):
+            raise FitRefused(
+                f"the Jacobian has shape {derivatives.shape}, not ({len(self.y)}, {len(b)})"
+            )
+        if not np.isfinite(derivatives).all():
+            raise FitRefused(f"the Jacobian is not finite at {_told(b)}")
+        return derivatives / self.sigma[:, None]
+
+    def inside(self, b: FloatArray) -> FloatArray:
+        """Bring a point into the bounds, a little off them, as a search must start."""
+        width = self.upper - self.lower
+        room = np.where(np.isfinite(width), 1e-3 * width, 1e-3 * (1e-3 + np.abs(b)))
+        return np.clip(b, self.lower + room, self.upper - room)
+
+
+@dataclass(frozen=True, slots=True)
+class Minimum:
+    """A checked minimum: weighted residuals, J = Q R there, and what was measured."""
+
+    parameters: FloatArray
+    residuals: FloatArray
+    q: FloatArray
+    r: FloatArray
+    r_inverse: FloatArray
+    condition_number: float
+    gradient: float
+    curvature: float
+    rounding: float
+
+    @property
+    def cost(self) -> float:
+        """Half the weighted sum of squares."""
+        return 0.5 * float(self.residuals @ self.residuals)
+
+
+def descend(problem: Problem, start: FloatArray, evaluations: int) -> FloatArray:
+    """Search by trust-region reflective steps, scaled by the Jacobian; shape (p,).
+
+    Raises
+    ------
+    FitRefused : a start outside the bounds or without finite values, or no convergence
+    """
+    from scipy.optimize import least_squares
+
+    if np.any(start <= problem.lower) or np.any(start >= problem.upper):
+        raise FitRefused(f"the start {_told(start)} does not lie inside the bounds")
+    if not np.isfinite(problem.residuals(start)).all():
+        raise FitRefused(f"the model is not finite at the start {_told(start)}")
+    with np.errstate(all="ignore"):
+        found = least_squares(
+            lambda b: -problem.residuals(b),
+            start,
+            problem.weighted_jacobian,
+            bounds=(problem.lower, problem.upper),
+            method="trf",
+            x_scale="jac",
+            ftol=_TOLERANCE,
+            xtol=_TOLERANCE,
+            gtol=_TOLERANCE,
+            max_nfev=evaluations,
+        )
+    if found.status <= 0:
+        raise FitRefused(
+            f"the search from {_told(start)} did not converge in {evaluations} evaluations"
+        )
+    if np.any(found.active_mask != 0):
+        which = int(np.flatnonzero(found.active_mask)[0])
+        raise FitRefused(
+            f"parameter {which} ended on its bound {found.x[which]:g}, where no standard error "
+            "holds; widen the bound or take a model without this parameter",
+            {"parameter": which, "bound": float(found.x[which])},
+        )
+    return np.asarray(found.x, dtype=np.float64)
+
+
+def polish(problem: Problem, b: FloatArray) -> Minimum:
+    """Finish by Newton steps in the metric of the Jacobian, and check what stands there.
+
+    With J = Q R and the Hessian R^T H R, the step is R^-1 H^-1 Q^T r.
+
+    Raises
+    ------
+    FitRefused : rank-deficient Jacobian, a gradient that does not vanish, or no minimum
+    """
+    q, r, condition = _factor(problem, b)
+    hessian = _hessian(problem, b, q, r)
+    curvature = float(np.linalg.eigvalsh(hessian)[0])
+    if not curvature > 0:
+        raise FitRefused(
+            f"the point {_told(b)} is no minimum: curvature {curvature:.2g} in one direction",
+            {"curvature": curvature},
+        )
+    residuals = problem.residuals(b)
+    slope = q.T @ residuals
+    for _ in range(_MOST_STEPS):
+        moved = b + np.linalg.solve(r, np.linalg.solve(hessian, slope))
+        if np.any(moved <= problem.lower) or np.any(moved >= problem.upper):
+            break
+        try:
+            moved_q, moved_r, moved_condition = _factor(problem, moved)
+        except FitRefused:
+            break
+        moved_residuals = problem.residuals(moved)
+        moved_slope = moved_q.T @ moved_residuals
+        if not np.linalg.norm(moved_slope) < np.linalg.norm(slope):
+            break
+        b, q, r, condition = moved, moved_q, moved_r, moved_condition
+        residuals, slope = moved_residuals, moved_slope
+    # A residual is not known better than the floats that it is the difference of.
+    rounding = 64.0 * _EPSILON * float(np.linalg.norm(problem.y / problem.sigma))
+    size = float(np.linalg.norm(residuals))
+    steepness = float(np.linalg.norm(slope))
+    if steepness > GRADIENT_LIMIT * size + rounding:
+        raise FitRefused(
+            f"the search ended where the gradient does not vanish: {steepness / size:.1e} of the "
+            f"residuals, at most {GRADIENT_LIMIT:.0e} is accepted",
+            {"gradient": steepness / size},
+        )
+    return Minimum(
+        parameters=b,
+        residuals=residuals,
+        q=q,
+        r=r,
+        r_inverse=np.linalg.solve(r, np.eye(len(b))),
+        condition_number=condition,
+        gradient=steepness / size if size > 0 else 0.0,
+        curvature=curvature,
+        rounding=rounding,
+    )
+
+
+def _factor(problem: Problem, b: FloatArray) -> tuple[FloatArray, FloatArray, float]:
+    """QR of the weighted Jacobian and its scaled condition number, refused beyond the limit."""
+    derivatives = problem.weighted_jacobian(b)
+    q, r = np.linalg.qr(derivatives)
+    lengths = np.sqrt(np.square(r).sum(axis=0))
+    if not np.all(lengths > 0):
+        which = int(np.flatnonzero(~(lengths > 0))[0])
+        raise FitRefused(f"the model does not depend on parameter {which} at {_told(b)}")
+    singular = np.linalg.svd(r / lengths, compute_uv=False)
+    condition = float(singular[0] / singular[-1]) if singular[-1] > 0 else float("inf")
+    if condition > CONDITION_LIMIT:
+        raise FitRefused(
+            f"the Jacobian is rank-deficient at {_told(b)}: condition number {condition:.1e}, at "
+            f"most {CONDITION_LIMIT:.0e} is accepted; the data do not determine all parameters",
+            {"condition_number": condition, "limit": CONDITION_LIMIT},
+        )
+    return q, r, condition
+
+
+def _hessian(problem: Problem, b: FloatArray, q: FloatArray, r: FloatArray) -> FloatArray:
+    """Hessian of half the squares in the metric of J^T J, by differences of the exact gradient.
+
+    The steps change the prediction by a thousandth of the noise, or enough to rise above rounding.
+    The same steps show whether the Jacobian is the model's derivative.
+    """
+    n, p = len(problem.y), len(b)
+    noise = float(np.linalg.norm(problem.residuals(b))) / np.sqrt(n)
+    size = float(np.linalg.norm(problem.y / problem.sigma)) / np.sqrt(n)
+    length = max(1e-3 * noise, 1e-8 * size) or 1e-8
+    columns = []
+    for direction in np.linalg.solve(r, length * np.eye(p)).T:
+        step = direction * _room(problem, b, direction)
+        ahead, behind = _slope_beside(problem, b + step), _slope_beside(problem, b - step)
+        expected = q @ (r @ step)
+        scale = float(np.linalg.norm(expected))
+        wrong = float(np.linalg.norm(0.5 * (behind[1] - ahead[1]) - expected)) / scale
+        if wrong > _JACOBIAN_LIMIT:
+            raise FitRefused(
+                f"the Jacobian is not the derivative of the model at {_told(b)}: they differ by "
+                f"{100 * wrong:.2g} %, at most {100 * _JACOBIAN_LIMIT:g} % is accepted",
+                {"difference": wrong},
+            )
+        columns.append(np.linalg.solve(r.T, ahead[0] - behind[0]) / (2.0 * scale))
+    hessian = np.stack(columns, axis=1)
+    return 0.5 * (hessian + hessian.T)
+
+
+def _room(problem: Problem, b: FloatArray, direction: FloatArray) -> float:
+    """Largest part of a step, at most all, that stays within half the way to every bound."""
+    nearest = np.minimum(problem.upper - b, b - problem.lower)
+    moving = direction != 0
+    return float(min(1.0, np.min(0.5 * nearest[moving] / np.abs(direction[moving]), initial=1.0)))
+
+
+def _slope_beside(problem: Problem, b: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Gradient of half the weighted squares, shape (p,), and the residuals, shape (n,)."""
+    residuals = problem.residuals(b)
+    if not np.isfinite(residuals).all():
+        raise FitRefused(f"the model is not finite at {_told(b)}, beside the minimum")
+    return -(problem.weighted_jacobian(b).T @ residuals), residuals
+
+
+def _told(b: FloatArray) -> str:
+    """Parameters as a reader wants them."""
+    return "(" + ", ".join(f"{v:.6g}" for v in b) + ")"

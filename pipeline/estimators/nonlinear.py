@@ -1,0 +1,179 @@
+"""Bounded weighted nonlinear least squares that proves its minimum or refuses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from pipeline.core.errors import FitRefused
+from pipeline.estimators.checks import (
+    ErrorScale,
+    degrees_of_freedom,
+    error_sizes,
+    finite_array,
+    same_length,
+)
+from pipeline.estimators.double_double import FloatArray
+from pipeline.estimators.fit import Fit, error_variance, weighted_residual_sd
+from pipeline.estimators.gauss_newton import Minimum, Problem, descend, polish
+
+# A second start confirms the first if its curve lies within this part of the residuals.
+_SAME = 1e-4
+_START_SHIFTS = (0.05, 0.2, 0.5, 1.0)
+_MOST_RESTARTS = 5
+_MOST_EVALUATIONS = 4000
+_CONFIRMING_EVALUATIONS = 500
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NonlinearFit(Fit):
+    """Parameters b of y = f(b) at a proven local minimum reached from two starts.
+
+    Parameters
+    ----------
+    parameters : b, shape (p,)
+    covariance : by linearisation at b, from the QR of the weighted Jacobian, shape (p, p)
+    gradient : length of the weighted residuals' projection on the tangent space over that of the
+        residuals: 0 at a minimum
+    curvature : smallest eigenvalue of the Hessian in the metric of J^T J: 1 for a linear model,
+        0 where the minimum stops being one
+    returned, elsewhere : further searches that ended on the same curve, and at another, higher
+        minimum; with `elsewhere` above 0 the model has several, and only starting values that
+        mean something make this the right one
+    """
+
+    parameters: FloatArray
+    covariance: FloatArray
+    gradient: float
+    curvature: float
+    returned: int
+    elsewhere: int
+
+    @property
+    def standard_errors(self) -> FloatArray:
+        """Square roots of the diagonal of the covariance, shape (p,)."""
+        return np.sqrt(np.diag(self.covariance))
+
+
+def fit_nonlinear(
+    model: Callable[[FloatArray], FloatArray],
+    jacobian: Callable[[FloatArray], FloatArray],
+    start: ArrayLike,
+    y: ArrayLike,
+    sigma: ArrayLike | None = None,
+    error_scale: ErrorScale = "estimated",
+    lower: ArrayLike | None = None,
+    upper: ArrayLike | None = None,
+    second_start: ArrayLike | None = None,
+) -> NonlinearFit:
+    r"""Minimise $\sum_i ((y_i - f_i(b)) / \sigma_i)^2$ over lower < b < upper.
+
+    A trust-region search goes from the start to a minimum and Newton steps finish it; gradient,
+    rank, curvature and the Jacobian itself are checked there. Then more searches start around it,
+    each parameter up or down by factors from 1.05 to 2.7: one at least must come back, and a lower
+    minimum takes its place and is confirmed in turn. That proves a minimum, and no lower one near.
+
+    Parameters
+    ----------
+    model : f, parameters of shape (p,) to predictions of shape (n,) `[unit of y]`
+    jacobian : exact derivatives df/db, shape (p,) to shape (n, p)
+    start : shape (p,), inside the bounds
+    y, sigma, error_scale : as in `fit_linear`
+    lower, upper : bounds, shape (p,) each; unbounded if not given
+    second_start : a start of the caller's own for one more search, shape (p,)
+
+    Raises
+    ------
+    FitRefused : a search that does not converge, a Jacobian that is not finite or rank-deficient
+        (scaled condition above 1e10) or no derivative of the model, a point that is no minimum, a minimum on a bound (standard
+        errors by linearisation do not hold there), or one that no other start confirms
+
+    Source: M. A. Branch et al., SIAM J. Sci. Comput. 21 (1999) 1 (search); D. M. Bates, D. G.
+    Watts, Nonlinear Regression Analysis (Wiley 1988), 2.2.3 (relative offset) and 7.2 (curvature).
+    """
+    values, first = finite_array("y", y), finite_array("start", start)
+    n, p = len(values), len(first)
+    sizes = error_sizes(sigma, n, error_scale)
+    dof = degrees_of_freedom(n, p, error_scale)
+    problem = Problem(
+        model, jacobian, values, sizes, _bound(lower, p, -np.inf), _bound(upper, p, np.inf)
+    )
+    best = polish(problem, descend(problem, first, _MOST_EVALUATIONS))
+    other = None if second_start is None else finite_array("second_start", second_start)
+    best, returned, elsewhere = _confirmed(problem, best, other)
+    residual_sd = weighted_residual_sd(best.residuals, dof)
+    return NonlinearFit(
+        parameters=best.parameters,
+        covariance=error_variance(residual_sd, error_scale) * (best.r_inverse @ best.r_inverse.T),
+        gradient=best.gradient,
+        curvature=best.curvature,
+        returned=returned,
+        elsewhere=elsewhere,
+        y=values,
+        sigma=sizes,
+        residuals=best.residuals * sizes,
+        leverages=np.einsum("ij,ij->i", best.q, best.q),
+        residual_sd=residual_sd,
+        dof=dof,
+        condition_number=best.condition_number,
+        error_scale=error_scale,
+    )
+
+
+def _bound(bound: ArrayLike | None, p: int, default: float) -> FloatArray:
+    """Take a bound of shape (p,), infinite where there is none."""
+    if bound is None:
+        return np.full(p, default)
+    values = np.asarray(bound, dtype=np.float64)
+    if np.isnan(values).any():
+        raise FitRefused("a bound must be a number or infinite, not nan")
+    same_length("a bound", values, p)
+    return values
+
+
+def _confirmed(
+    problem: Problem, best: Minimum, second: FloatArray | None
+) -> tuple[Minimum, int, int]:
+    """Search from all over, move to what is lower, and count what came back or went elsewhere."""
+    given = [] if second is None else [second]
+    for _ in range(_MOST_RESTARTS):
+        held, returned, elsewhere = best, 0, 0
+        for start in [*given, *_beside(problem, held)]:
+            try:
+                found = polish(problem, descend(problem, start, _CONFIRMING_EVALUATIONS))
+            except FitRefused:
+                continue  # where this start ends says nothing of the minimum in hand
+            if _same_curve(held, found):
+                returned += 1
+                continue
+            elsewhere += 1
+            if found.cost < best.cost:
+                best = found
+        if best is held:
+            if returned:
+                return best, returned, elsewhere
+            break
+    raise FitRefused(
+        "no second start came back to the minimum found; give starting values nearer to it, or a "
+        "model whose parameters the data determine",
+        {"cost": best.cost, "gradient": best.gradient, "curvature": best.curvature},
+    )
+
+
+def _beside(problem: Problem, minimum: Minimum) -> list[FloatArray]:
+    """Points around a minimum: each factor up for some parameters and down for the others."""
+    index = np.arange(len(minimum.parameters))
+    starts = []
+    for k, shift in enumerate(_START_SHIFTS):
+        up = np.where((index >> k) % 2 == 0, 1.0, -1.0)
+        starts.append(problem.inside(minimum.parameters * np.exp(shift * up)))
+    return starts
+
+
+def _same_curve(a: Minimum, b: Minimum) -> bool:
+    """Whether two minima predict the same, however the parameters may have changed places."""
+    noise = np.sqrt(2.0 * min(a.cost, b.cost))
+    return bool(np.linalg.norm(a.residuals - b.residuals) <= _SAME * noise + a.rounding)
