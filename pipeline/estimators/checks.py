@@ -52,7 +52,7 @@ def error_sizes(sigma: ArrayLike | None, n: int, error_scale: ErrorScale) -> Flo
     """
     if sigma is None:
         if error_scale == "known":
-            raise FitRefused("a known error scale needs sigma, the standard deviation of each point")
+            raise FitRefused("a known error scale needs sigma, the standard deviations")
         return np.ones(n)
     sizes = finite_array("sigma", sigma)
     same_length("sigma", sizes, n)

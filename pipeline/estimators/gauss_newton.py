@@ -91,9 +91,13 @@ def descend(problem: Problem, start: FloatArray, evaluations: int) -> FloatArray
         raise FitRefused(f"the start {_told(start)} does not lie inside the bounds")
     if not np.isfinite(problem.residuals(start)).all():
         raise FitRefused(f"the model is not finite at the start {_told(start)}")
+
+    def excess(b: FloatArray) -> FloatArray:
+        return -problem.residuals(b)
+
     with np.errstate(all="ignore"):
         found = least_squares(
-            lambda b: -problem.residuals(b),
+            excess,
             start,
             problem.weighted_jacobian,
             bounds=(problem.lower, problem.upper),
@@ -166,7 +170,7 @@ def polish(problem: Problem, b: FloatArray) -> Minimum:
         residuals=residuals,
         q=q,
         r=r,
-        r_inverse=np.linalg.solve(r, np.eye(len(b))),
+        r_inverse=np.asarray(np.linalg.solve(r, np.eye(len(b)))),
         condition_number=condition,
         gradient=steepness / size if size > 0 else 0.0,
         curvature=curvature,

@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
-from scipy.optimize import nnls
 
 from pipeline.core.errors import FitRefused
+from pipeline.estimators.chebyshev_series import basis, derivative, evaluate, extremes, lowest
 from pipeline.estimators.checks import ErrorScale
 from pipeline.estimators.double_double import FloatArray
 from pipeline.estimators.polynomial import (
@@ -92,25 +91,7 @@ def fit_non_decreasing(
 
 def is_non_decreasing(fit: PolynomialFit) -> bool:
     """Tell whether dy/dx >= 0 on the whole window, from its exact minima."""
-    return bool(np.min(_slope(fit.chebyshev_coefficients, _extremes(fit.chebyshev_coefficients))) >= 0)
-
-
-def _slope(coefficients: FloatArray, t: FloatArray) -> FloatArray:
-    """Derivative by t of a Chebyshev series."""
-    return np.asarray(chebyshev.chebval(t, chebyshev.chebder(coefficients)))
-
-
-def _extremes(coefficients: FloatArray) -> FloatArray:
-    """Where the slope can be lowest: both ends, and the roots of the second derivative inside."""
-    ends = np.array([-1.0, 1.0])
-    if len(coefficients) < 4:
-        return ends
-    second = chebyshev.chebder(coefficients, 2)
-    second = chebyshev.chebtrim(second, 1e-14 * float(np.abs(second).max()))
-    roots = chebyshev.chebroots(second)
-    # A double root may come out as a complex pair; a point too many does no harm.
-    real = roots.real[np.abs(roots.imag) < 1e-4]
-    return np.concatenate([ends, real[np.abs(real) < 1]])
+    return lowest(derivative(fit.chebyshev_coefficients)) >= 0
 
 
 def _exchange(plain: PolynomialFit, floor: float) -> tuple[FloatArray, FloatArray, bool]:
@@ -119,17 +100,18 @@ def _exchange(plain: PolynomialFit, floor: float) -> tuple[FloatArray, FloatArra
     root = np.linalg.cholesky(plain.chebyshev_cofactors)
     margin = _MARGIN * max(float(np.abs(plain.y).max()), abs(floor))
     units = np.eye(plain.degree + 1)
-    lowest = chebyshev.chebvander(np.array([-1.0]), plain.degree)
+    at_low = basis(np.array([-1.0]), plain.degree)
     # A constant has no slope to hold: its only constraint is the floor.
     points = np.cos(np.pi * np.linspace(0, 1, 2 * plain.degree + 1)) if plain.degree else _NOWHERE
     for _ in range(_MOST_EXCHANGES):
-        slopes = np.stack([_slope(unit, points) for unit in units], axis=1)
-        rows = np.concatenate([slopes, lowest])
+        slopes = np.stack([evaluate(points, derivative(unit)) for unit in units], axis=1)
+        rows = np.concatenate([slopes, at_low])
         bounds = np.concatenate([np.full(len(points), margin), [floor + margin]])
         step, held = _least_distance(rows @ root, bounds - rows @ best)
         coefficients = best + root @ step
-        extremes = _extremes(coefficients)
-        falling = extremes[_slope(coefficients, extremes) < 0]
+        slope = derivative(coefficients)
+        where = extremes(slope)
+        falling = where[evaluate(where, slope) < 0]
         if not len(falling):
             return coefficients, points[held[:-1]], bool(held[-1])
         points = np.union1d(points, falling)
@@ -143,6 +125,8 @@ def _least_distance(
     rows: FloatArray, bounds: FloatArray
 ) -> tuple[FloatArray, np.ndarray[tuple[int], np.dtype[np.bool_]]]:
     """Find the shortest z with rows @ z >= bounds, and which rows hold it; shapes (m, p), (m,)."""
+    from scipy.optimize import nnls
+
     lengths = np.sqrt(np.square(rows).sum(axis=1))
     lengths[lengths == 0] = 1.0
     size = float(np.abs(bounds / lengths).max())

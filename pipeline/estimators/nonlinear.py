@@ -87,9 +87,10 @@ def fit_nonlinear(
 
     Raises
     ------
-    FitRefused : a search that does not converge, a Jacobian that is not finite or rank-deficient
-        (scaled condition above 1e10) or no derivative of the model, a point that is no minimum, a minimum on a bound (standard
-        errors by linearisation do not hold there), or one that no other start confirms
+    FitRefused : a search that does not converge, a Jacobian that is not finite, rank-deficient
+        (scaled condition above 1e10) or not the derivative of the model, a point that is no
+        minimum, a minimum on a bound (standard errors by linearisation do not hold there), or one
+        that no other start confirms
 
     Source: M. A. Branch et al., SIAM J. Sci. Comput. 21 (1999) 1 (search); D. M. Bates, D. G.
     Watts, Nonlinear Regression Analysis (Wiley 1988), 2.2.3 (relative offset) and 7.2 (curvature).

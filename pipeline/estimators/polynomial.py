@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
 from pipeline.core.errors import FitRefused, OutOfRange
+from pipeline.estimators.chebyshev_series import basis, derivative, evaluate
 from pipeline.estimators.checks import (
     ErrorScale,
     degrees_of_freedom,
@@ -61,11 +61,9 @@ class PolynomialFit(Fit):
         ------
         OutOfRange : an x outside [low, high]
         """
-        t = self._standard(x)
-        # numpy makes a row of a single number; the answer keeps the shape that was asked.
-        basis = chebyshev.chebvander(t, self.degree).reshape(*t.shape, self.degree + 1)
-        cofactor = np.einsum("...i,ij,...j->...", basis, self.chebyshev_cofactors, basis)
-        value = basis @ self.chebyshev_coefficients
+        terms = basis(self._standard(x), self.degree)
+        cofactor = np.einsum("...i,ij,...j->...", terms, self.chebyshev_cofactors, terms)
+        value = terms @ self.chebyshev_coefficients
         return value, np.sqrt(self.error_variance * np.maximum(cofactor, 0.0))
 
     def derivative(self, x: ArrayLike) -> FloatArray:
@@ -75,8 +73,8 @@ class PolynomialFit(Fit):
         ------
         OutOfRange : an x outside [low, high]
         """
-        slopes = chebyshev.chebder(self.chebyshev_coefficients) / half_width(self.low, self.high)
-        return np.asarray(chebyshev.chebval(self._standard(x), slopes))
+        slopes = derivative(self.chebyshev_coefficients) / half_width(self.low, self.high)
+        return evaluate(self._standard(x), slopes)
 
     def _standard(self, x: ArrayLike) -> FloatArray:
         """Map x to t in [-1, 1], refusing what lies outside the window."""
@@ -84,7 +82,9 @@ class PolynomialFit(Fit):
         inside = (points >= self.low) & (points <= self.high)
         if not inside.all():
             found = float(points[~inside].flat[0])
-            raise OutOfRange(f"the polynomial holds from {self.low:g} to {self.high:g}, not {found}")
+            raise OutOfRange(
+                f"the polynomial holds from {self.low:g} to {self.high:g}, not {found}"
+            )
         t = (points - middle(self.low, self.high)) / half_width(self.low, self.high)
         return np.asarray(np.clip(t, -1.0, 1.0))
 

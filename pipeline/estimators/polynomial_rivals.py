@@ -67,7 +67,7 @@ def exact_rationals(x: FloatArray, y: FloatArray, degree: int) -> tuple[FloatArr
 
 
 def _gauss_jordan(rows: list[list[Fraction]]) -> list[list[Fraction]]:
-    """Bring the left square of the rows to the identity; exact, so any pivot but zero is as good."""
+    """Bring the left square of the rows to the identity; exact, so any pivot but zero will do."""
     for i in range(len(rows)):
         pivot = next(k for k in range(i, len(rows)) if rows[k][i])
         rows[i], rows[pivot] = rows[pivot], rows[i]
@@ -87,6 +87,7 @@ def _root(value: Fraction) -> float:
 
 
 def _standard_errors(residuals: FloatArray, cofactors: FloatArray, degree: int) -> FloatArray:
-    """Scale the diagonal of the cofactors by the residual variance."""
+    """Scale the diagonal of the cofactors by the residual variance; NaN for a negative one."""
     variance = float(residuals @ residuals) / (len(residuals) - degree - 1)
-    return np.sqrt(variance * cofactors)
+    with np.errstate(invalid="ignore"):
+        return np.sqrt(variance * cofactors)

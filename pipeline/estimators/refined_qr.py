@@ -92,7 +92,7 @@ def _column_scale(design: FloatArray) -> FloatArray:
         empty = int(np.flatnonzero(~(largest > 0))[0])
         raise FitRefused(f"column {empty} of the design is zero: its parameter is not determined")
     length = largest * np.sqrt(np.square(design / largest).sum(axis=0))
-    return np.ldexp(1.0, -np.frexp(length)[1])
+    return np.asarray(np.ldexp(1.0, -np.frexp(length)[1]), dtype=np.float64)
 
 
 def _condition_number(r: FloatArray) -> float:

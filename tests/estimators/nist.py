@@ -1,18 +1,39 @@
-"""The models of the 27 nonlinear NIST problems with their exact Jacobians.
+"""The NIST reference problems: data, certified values, and the nonlinear models with Jacobians.
 
-Each takes the parameters b, shape (p,), and the columns x, and returns the prediction, shape (n,),
-and its derivatives by b, shape (n, p).
+Each model takes the parameters b, shape (p,), and the columns x, and returns the prediction, shape
+(n,), and the columns of its derivatives by b, shape (n,) each.
 """
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 FloatArray = NDArray[np.float64]
 Model = Callable[[FloatArray, Mapping[str, FloatArray]], tuple[FloatArray, list[FloatArray]]]
+
+
+def problems(kind: str) -> dict[str, dict[str, Any]]:
+    """Read `linear` or `nonlinear` problems by name."""
+    path = Path(__file__).parents[1] / "data" / "nist" / f"{kind}.toml"
+    return tomllib.loads(path.read_text(encoding="utf-8"))
+
+
+def predictors(problem: Mapping[str, Any]) -> dict[str, FloatArray]:
+    """Columns x, x1, x2, ... of a problem."""
+    return {k: np.array(v, dtype=float) for k, v in problem.items() if k[0] == "x"}
+
+
+def digits(found: ArrayLike, certified: ArrayLike) -> float:
+    """Fewest digits that agree, at most 15; a certified zero asks for small values."""
+    a, c = np.asarray(found, dtype=float), np.asarray(certified, dtype=float)
+    error = np.abs(a - c) / np.where(c == 0, 1.0, np.abs(c))
+    return float(np.min(-np.log10(np.maximum(error, 1e-15))))
 
 
 def bennett5(b: FloatArray, d: Mapping[str, FloatArray]) -> tuple[FloatArray, list[FloatArray]]:
