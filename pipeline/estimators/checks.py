@@ -37,10 +37,10 @@ def finite_array(name: str, values: ArrayLike, dimensions: int = 1) -> FloatArra
     return array
 
 
-def same_length(name: str, array: FloatArray, n: int) -> None:
+def same_length(name: str, array: FloatArray, n: int, of: str = "points") -> None:
     """Refuse an array whose first dimension is not n."""
     if len(array) != n:
-        raise FitRefused(f"{name} holds {len(array)} values for {n} points")
+        raise FitRefused(f"{name} holds {len(array)} values for {n} {of}")
 
 
 def error_sizes(sigma: ArrayLike | None, n: int, error_scale: ErrorScale) -> FloatArray:

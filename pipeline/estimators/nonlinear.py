@@ -104,6 +104,8 @@ def fit_nonlinear(
     )
     best = polish(problem, descend(problem, first, _MOST_EVALUATIONS))
     other = None if second_start is None else finite_array("second_start", second_start)
+    if other is not None:
+        same_length("second_start", other, p, "parameters")
     best, returned, elsewhere = _confirmed(problem, best, other)
     residual_sd = weighted_residual_sd(best.residuals, dof)
     return NonlinearFit(
@@ -131,7 +133,7 @@ def _bound(bound: ArrayLike | None, p: int, default: float) -> FloatArray:
     values = np.asarray(bound, dtype=np.float64)
     if np.isnan(values).any():
         raise FitRefused("a bound must be a number or infinite, not nan")
-    same_length("a bound", values, p)
+    same_length("a bound", values, p, "parameters")
     return values
 
 
@@ -169,7 +171,7 @@ def _beside(problem: Problem, minimum: Minimum) -> list[FloatArray]:
     index = np.arange(len(minimum.parameters))
     starts = []
     for k, shift in enumerate(_START_SHIFTS):
-        up = np.where((index >> k) % 2 == 0, 1.0, -1.0)
+        up = np.where(((index >> k) + k) % 2 == 0, 1.0, -1.0)
         starts.append(problem.inside(minimum.parameters * np.exp(shift * up)))
     return starts
 

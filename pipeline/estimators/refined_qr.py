@@ -27,6 +27,7 @@ from pipeline.estimators.double_double import DoubleDouble, FloatArray
 # leave fewer than 4 in the parameters, whatever the arithmetic.
 CONDITION_LIMIT = 1e12
 _ENOUGH = 1e-26  # relative error at which refinement stops: ten digits beyond a float
+_BELOW_THE_DATA = 1e-18  # a standstill here is harmless: the rounding of the data is larger
 _MOST_STEPS = 12
 
 
@@ -133,6 +134,8 @@ def _refine(
         if step * step / previous <= _ENOUGH:  # the change that the next step would bring
             return b, u
         if step > 0.5 * previous and not first:
+            if step < _BELOW_THE_DATA:
+                return b, u
             break
         previous, first = step, False
         above = (f_all - u - a @ b).high

@@ -1,0 +1,164 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from pipeline.core.errors import FitRefused
+from pipeline.estimators.checks import ErrorScale
+from pipeline.estimators.linear import LinearFit, fit_linear
+from pipeline.estimators.polynomial import PolynomialFit, fit_polynomial
+from pipeline.estimators.selection import DECISIVE, aicc, choose, leave_one_out_sd
+
+HOURS = np.linspace(1, 12, 23)
+# Sylgard 184 (10:1) and 182 (10:1), Sikulskyi et al. 2022, Table 2.
+QUARTIC = np.polynomial.polynomial.polyval(HOURS, [2.5, 0.493, 0.207, -0.0674, 0.00743])
+LINE = 1.64 + 0.267 * HOURS
+
+
+def orders(
+    y: np.ndarray,
+    most: int,
+    sigma: np.ndarray | None = None,
+    error_scale: ErrorScale = "estimated",
+    x: np.ndarray = HOURS,
+) -> list[tuple[str, Callable[[], PolynomialFit]]]:
+    def candidate(degree: int) -> tuple[str, Callable[[], PolynomialFit]]:
+        return f"order {degree}", lambda: fit_polynomial(x, y, degree, sigma, error_scale)
+
+    return [candidate(degree) for degree in range(most + 1)]
+
+
+@pytest.mark.parametrize(("error_scale", "cases"), [("estimated", 1000), ("known", 250)])
+def test_of_a_thousand_straight_lines_hardly_any_is_called_a_curve(
+    error_scale: ErrorScale, cases: int
+) -> None:
+    rng = np.random.default_rng(21)
+    x, line = HOURS[::2], LINE[::2]  # every hour
+    sigma = np.full(len(x), 0.05)
+    higher = 0
+    for _ in range(cases):
+        y = line + sigma * rng.normal(size=len(x))
+        higher += choose(orders(y, 4, sigma, error_scale, x)[1:]).fit.degree > 1
+    assert higher < 0.03 * cases  # promised are 5 %
+
+
+@pytest.mark.parametrize(("noise", "least", "most"), [(0.005, 39, 40), (0.3, 0, 10)])
+def test_the_quartic_is_found_when_the_noise_allows_and_only_then(
+    noise: float, least: int, most: int
+) -> None:
+    rng = np.random.default_rng(22)
+    found = []
+    for _ in range(40):
+        y = QUARTIC * (1 + noise * rng.normal(size=len(HOURS)))
+        found.append(choose(orders(y, 6, QUARTIC)).fit.degree)
+    assert least <= found.count(4) <= most
+    assert max(found) <= 5
+    if noise > 0.1:
+        assert np.median(found) < 4
+
+
+def test_the_answer_records_what_was_tried_and_why() -> None:
+    rng = np.random.default_rng(23)
+    choice = choose(orders(LINE + 0.05 * rng.normal(size=len(HOURS)), 3))
+    assert choice.name == "order 1"
+    assert [t.name for t in choice.tried] == ["order 0", "order 1", "order 2", "order 3"]
+    assert [t.parameter_count for t in choice.tried] == [1, 2, 3, 4]
+    assert all(t.leave_one_out_sd is not None and t.refusal == "" for t in choice.tried)
+    scores = [t.aicc for t in choice.tried]
+    assert scores[1] == aicc(choice.fit)
+    assert choice.reason == (
+        f"order 1: AICc {scores[1]:.1f} is the lowest; the best cheaper law, order 0, has "
+        f"{scores[0]:.1f}"
+    )
+
+
+def test_a_cheaper_law_wins_unless_it_is_clearly_worse() -> None:
+    x = np.arange(20.0)
+    # Residuals made so that the parabola is better, but not by enough.
+    ripple = np.where(np.arange(20) % 2 == 0, 1.0, -1.0)
+    bow = (x - 9.5) ** 2 - np.mean((x - 9.5) ** 2)
+    weak, strong = 0.02 * bow, 0.05 * bow
+    for extra, name in ((weak, "order 1"), (strong, "order 2")):
+        choice = choose(orders(x + ripple + extra, 2, x=x))
+        assert choice.name == name
+        line, parabola = choice.tried[1].aicc, choice.tried[2].aicc
+        assert line is not None
+        assert parabola is not None
+        assert parabola < line
+        assert (line - parabola <= DECISIVE) == (name == "order 1")
+    assert "order 1: AICc " in choose(orders(x + ripple + weak, 2, x=x)).reason
+    assert f"is within {DECISIVE:g} of the lowest, 10.5 of order 2; " in (
+        choose(orders(x + ripple + weak, 2, x=x)).reason
+    )
+
+
+def test_refused_candidates_are_recorded_and_passed_over() -> None:
+    x = np.array([1.0, 2, 3, 4, 5, 6])
+    choice = choose(orders(x + np.array([0.1, -0.1, 0.1, 0, -0.1, 0.1]), 6, x=x))
+    told = {t.name: t.refusal for t in choice.tried}
+    assert choice.name == "order 1"
+    assert told["order 4"] == (
+        "AICc of 5 parameters and an error scale needs at least 8 points, not 6"
+    )
+    assert told["order 6"].startswith("7 parameters need at least 8 points, not 6")
+
+
+def test_exact_data_get_the_law_they_were_made_with() -> None:
+    assert choose(orders(2 + 3 * HOURS, 6)).fit.degree == 1
+    assert choose(orders(QUARTIC, 6)).fit.degree == 4
+    assert choose(orders(np.round(4 * HOURS) ** 2, 6, x=np.round(4 * HOURS))).fit.degree == 2
+
+
+def test_the_score_does_not_prefer_units() -> None:
+    rng = np.random.default_rng(24)
+    y = LINE + 0.05 * rng.normal(size=len(HOURS))
+    small, large = orders(y, 3), orders(1e6 * y, 3)
+    differences = [aicc(large[k][1]()) - aicc(small[k][1]()) for k in range(4)]
+    np.testing.assert_allclose(differences, 2 * len(HOURS) * np.log(1e6), rtol=1e-12)
+
+
+def test_leave_one_out_is_what_leaving_one_out_gives() -> None:
+    rng = np.random.default_rng(25)
+    sigma = 0.02 * QUARTIC
+    y = QUARTIC + sigma * rng.normal(size=len(HOURS))
+    errors = []
+    for i in range(1, len(HOURS) - 1):  # a window without its end would have to extrapolate
+        rest = np.arange(len(HOURS)) != i
+        without = fit_polynomial(HOURS[rest], y[rest], 4, sigma[rest])
+        errors.append((y[i] - float(without(HOURS[i])[0])) / sigma[i])
+    fit = fit_polynomial(HOURS, y, 4, sigma)
+    shortcut = fit.weighted_residuals / (1 - fit.leverages)
+    np.testing.assert_allclose(shortcut[1:-1], errors, rtol=1e-9)
+    assert leave_one_out_sd(fit) == pytest.approx(np.sqrt(np.mean(shortcut**2)), rel=1e-14)
+
+
+def test_what_cannot_be_scored_is_refused() -> None:
+    design = np.array([[1.0, 0], [1, 0], [1, 0], [1, 1]])
+    alone = fit_linear(design, [1.0, 2, 4, 9])
+    with pytest.raises(FitRefused) as refusal:
+        leave_one_out_sd(alone)
+    assert str(refusal.value) == (
+        "point 3 alone determines a parameter: the others cannot predict it"
+    )
+    with pytest.raises(FitRefused) as refusal:
+        choose([])
+    assert str(refusal.value) == "no candidate law could be fitted: there are none"
+    with pytest.raises(FitRefused) as refusal:
+        choose([("flat", lambda: fit_linear(np.ones((5, 1)), np.zeros(5)))])
+    assert str(refusal.value) == (
+        "no candidate law could be fitted: flat: data that are all zero say nothing about a law"
+    )
+
+
+def test_scores_of_different_data_are_not_compared() -> None:
+    def flat(n: int, error_scale: ErrorScale) -> Callable[[], LinearFit]:
+        return lambda: fit_linear(np.ones((n, 1)), HOURS[:n], np.ones(n), error_scale)
+
+    for other in (flat(8, "estimated"), flat(9, "known")):
+        with pytest.raises(FitRefused) as refusal:
+            choose([("a", flat(9, "estimated")), ("b", other)])
+        assert str(refusal.value) == (
+            "candidate laws must be fitted to the same data with the same errors"
+        )
