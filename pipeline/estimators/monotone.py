@@ -68,7 +68,8 @@ def fit_non_decreasing(
     Parameters
     ----------
     x, y, degree, sigma, error_scale : as in `fit_polynomial`
-    floor : least value allowed anywhere in the window, such as 0 `[unit of y]`
+    floor : least value allowed anywhere in the window; a little above 0 for a law that must be
+        positive `[unit of y]`
 
     Raises
     ------
@@ -76,6 +77,8 @@ def fit_non_decreasing(
 
     Source: C. L. Lawson, R. J. Hanson, Solving Least Squares Problems (SIAM 1995), chapter 23.
     """
+    if not np.isfinite(floor):
+        raise FitRefused(f"the floor must be finite, not {floor}")
     plain = fit_polynomial(x, y, degree, sigma, error_scale)
     if is_non_decreasing(plain) and float(plain(plain.low)[0]) >= floor:
         return NonDecreasingFit(plain, plain, (), False)
@@ -97,7 +100,13 @@ def is_non_decreasing(fit: PolynomialFit) -> bool:
 def _exchange(plain: PolynomialFit, floor: float) -> tuple[FloatArray, FloatArray, bool]:
     """Hold the slope where it is lowest, solve, look again: coefficients, touching t, at floor."""
     best = plain.chebyshev_coefficients
-    root = np.linalg.cholesky(plain.chebyshev_cofactors)
+    try:
+        root = np.linalg.cholesky(plain.chebyshev_cofactors)
+    except np.linalg.LinAlgError:
+        raise FitRefused(
+            f"x hardly determine a polynomial of degree {plain.degree} (condition number "
+            f"{plain.condition_number:.1e}), so that it cannot be held to a shape; lower the degree"
+        ) from None
     margin = _MARGIN * max(float(np.abs(plain.y).max()), abs(floor))
     units = np.eye(plain.degree + 1)
     at_low = basis(np.array([-1.0]), plain.degree)
@@ -107,24 +116,23 @@ def _exchange(plain: PolynomialFit, floor: float) -> tuple[FloatArray, FloatArra
         slopes = np.stack([evaluate(points, derivative(unit)) for unit in units], axis=1)
         rows = np.concatenate([slopes, at_low])
         bounds = np.concatenate([np.full(len(points), margin), [floor + margin]])
-        step, held = _least_distance(rows @ root, bounds - rows @ best)
+        step = _least_distance(rows @ root, bounds - rows @ best)
         coefficients = best + root @ step
         slope = derivative(coefficients)
         where = extremes(slope)
-        falling = where[evaluate(where, slope) < 0]
-        if not len(falling):
-            return coefficients, points[held[:-1]], bool(held[-1])
-        points = np.union1d(points, falling)
+        slopes_there = evaluate(where, slope)
+        if np.all(slopes_there >= 0):
+            at_floor = float((at_low @ coefficients)[0]) <= floor + 2 * margin
+            return coefficients, where[slopes_there <= 2 * margin], at_floor
+        points = np.union1d(points, where[slopes_there < 0])
     raise FitRefused(
         f"no non-decreasing polynomial of degree {plain.degree} was found in {_MOST_EXCHANGES} "
         "exchanges; lower the degree"
     )
 
 
-def _least_distance(
-    rows: FloatArray, bounds: FloatArray
-) -> tuple[FloatArray, np.ndarray[tuple[int], np.dtype[np.bool_]]]:
-    """Find the shortest z with rows @ z >= bounds, and which rows hold it; shapes (m, p), (m,)."""
+def _least_distance(rows: FloatArray, bounds: FloatArray) -> FloatArray:
+    """Find the shortest z with rows @ z >= bounds, shapes (m, p) and (m,)."""
     from scipy.optimize import nnls
 
     lengths = np.sqrt(np.square(rows).sum(axis=1))
@@ -133,6 +141,9 @@ def _least_distance(
     system = np.concatenate([rows.T / lengths, [bounds / lengths / size]])
     target = np.zeros(len(system))
     target[-1] = 1.0
-    multipliers, _ = nnls(system, target)
+    try:
+        multipliers, _ = nnls(system, target)
+    except RuntimeError as error:
+        raise FitRefused(f"the constrained fit did not end: {error}; lower the degree") from error
     rest = system @ multipliers - target
-    return -size * rest[:-1] / rest[-1], multipliers > 0
+    return np.asarray(-size * rest[:-1] / rest[-1])

@@ -74,7 +74,8 @@ def fit_nonlinear(
     A trust-region search goes from the start to a minimum and Newton steps finish it; gradient,
     rank, curvature and the Jacobian itself are checked there. Then more searches start around it,
     each parameter up or down by factors from 1.05 to 2.7: one at least must come back, and a lower
-    minimum takes its place and is confirmed in turn. That proves a minimum, and no lower one near.
+    minimum takes its place and is confirmed in turn. That proves a local minimum and looks for a
+    lower one around it; no search proves that there is none far away.
 
     Parameters
     ----------

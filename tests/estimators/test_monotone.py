@@ -122,6 +122,26 @@ def test_a_moved_curve_is_nearer_the_truth_and_its_intervals_cover_at_least_as_o
 def test_what_the_plain_fit_refuses_is_refused() -> None:
     with pytest.raises(FitRefused, match="degree 4 needs at least 5 distinct x, not 2"):
         fit_non_decreasing([1.0, 2, 2, 2, 2, 2], [1.0, 2, 3, 4, 5, 6], 4, floor=0.0)
+    with pytest.raises(FitRefused, match="the floor must be finite, not nan"):
+        fit_non_decreasing(HOURS, HOURS, 1, floor=np.nan)
+
+
+def test_x_in_clusters_too_narrow_for_a_shape_are_refused() -> None:
+    x = np.repeat([1.0, 2.0, 3.0], 3) + 1e-6 * np.tile([0.0, 1.0, 2.0], 3)
+    y = np.cos(40 * np.arange(9.0))
+    assert fit_polynomial(x, y, 6).condition_number < 1e12
+    with pytest.raises(FitRefused, match="x hardly determine a polynomial of degree 6 "):
+        fit_non_decreasing(x, y, 6, floor=0.0)
+    with pytest.raises(FitRefused, match="no non-decreasing polynomial of degree 4 was found in "):
+        fit_non_decreasing(x, y, 4, floor=0.0)
+
+
+def test_each_place_where_the_curve_is_held_is_told_once() -> None:
+    # The cube falls around its middle: held there, and nowhere else.
+    x = np.linspace(-1, 1, 21)
+    found = fit_non_decreasing(x, x**3 - 0.2 * x, 3, floor=-10.0)
+    assert found.touching == pytest.approx([0.0], abs=1e-6)
+    assert not found.at_floor
 
 
 def test_slopes_are_checked_at_their_exact_minima() -> None:
