@@ -48,7 +48,7 @@ def test_intervals_cover_as_often_as_they_say(errors: ErrorModel) -> None:
     mean = law(TIME, RATE)
     t = stats.t.ppf(0.975, len(TIME) - 7)
     parameters, values = [], []
-    for _ in range(80):
+    for _ in range(60):
         noise = rng.normal(size=len(TIME))
         y = mean * np.exp(0.02 * noise) if errors == "of reading" else mean + 2.0 * noise
         fit = fit_power_law(TIME, RATE, y, 3, 2, errors)
@@ -57,9 +57,9 @@ def test_intervals_cover_as_often_as_they_say(errors: ErrorModel) -> None:
         parameters.append(np.abs(found - truth) <= t * np.sqrt(np.diag(fit.covariance)))
         value, uncertainty = fit(6.5, 0.3)
         values.append(abs(value - law(6.5, 0.3)) <= t * uncertainty)
-    # 95 % of 80: +-2.4 % at one standard deviation.
-    assert np.all(np.abs(np.mean(parameters, axis=0) - 0.95) < 0.075)
-    assert abs(np.mean(values) - 0.95) < 0.075
+    # 95 % of 60: +-2.8 % at one standard deviation.
+    assert np.all(np.abs(np.mean(parameters, axis=0) - 0.95) < 0.085)
+    assert abs(np.mean(values) - 0.95) < 0.085
 
 
 def test_units_scale_the_factor_and_leave_the_exponent() -> None:

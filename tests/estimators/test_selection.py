@@ -30,7 +30,7 @@ def orders(
     return [candidate(degree) for degree in range(most + 1)]
 
 
-@pytest.mark.parametrize(("error_scale", "cases"), [("estimated", 1000), ("known", 250)])
+@pytest.mark.parametrize(("error_scale", "cases"), [("estimated", 1000), ("known", 150)])
 def test_of_a_thousand_straight_lines_hardly_any_is_called_a_curve(
     error_scale: ErrorScale, cases: int
 ) -> None:
