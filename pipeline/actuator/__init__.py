@@ -1,0 +1,1 @@
+"""Unimorph dielectric elastomer actuators: from a layer stack and a voltage to a bent strip."""
