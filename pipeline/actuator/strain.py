@@ -191,7 +191,8 @@ def in_plane_strain(strain: Reals, poisson_ratio: Reals, rule: InPlane) -> Reals
     """Give the free in-plane strain of a film whose Maxwell pressure over modulus is `s`.
 
     `poisson`: `nu s`, a plain pressure on the faces. `maxwell`: `p / (2 Y) = s / 2`, the full
-    Maxwell stress; both agree for an incompressible film, nu = 1/2.
+    Maxwell stress; both agree for an incompressible film, nu = 1/2. The thinning is `s` under
+    both (the full stress would thin by `(1/2 + nu) s`, 1 % less at nu = 0.49).
 
     Parameters
     ----------
