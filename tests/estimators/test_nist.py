@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from nist import MODELS, digits, predictors, problems
+from tests.estimators.nist import MODELS, digits, predictors, problems
 
 from pipeline.estimators import polynomial_rivals as rivals
 from pipeline.estimators.linear import fit_linear
