@@ -1,1 +1,1 @@
-"""Cards and the database: one material, its records, laws, refusals and origins."""
+"""From records to what leaves the house: cards, the database, the curves, the trace of a number."""

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.estimators.nist import MODELS, digits, predictors, problems
 
 from pipeline.estimators import polynomial_rivals as rivals
 from pipeline.estimators.linear import fit_linear
 from pipeline.estimators.nonlinear import fit_nonlinear
 from pipeline.estimators.polynomial import fit_polynomial
+from tests.estimators.nist import MODELS, digits, predictors, problems
 
 LINEAR = problems("linear")
 NONLINEAR = problems("nonlinear")

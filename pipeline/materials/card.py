@@ -1,0 +1,247 @@
+"""The material card: everything that is known of one material, and what was refused."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, fields, replace
+from functools import partial
+from itertools import pairwise
+from operator import itemgetter
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pipeline.core.errors import MissingProperty
+from pipeline.core.quantity import Quantity
+from pipeline.core.records import Condition, Law, PropertyRecord, Refusal
+from pipeline.materials import document as doc
+from pipeline.materials.document import CardError, Document
+from pipeline.materials.select import choose, refusal_reasons
+
+E = TypeVar("E", PropertyRecord, Law)
+
+
+@dataclass(frozen=True, slots=True)
+class Credit:
+    """Where a campaign's data come from and on which terms they may be used."""
+
+    campaign: str
+    title: str
+    laboratory: str
+    licence: str
+    source: str
+    synthetic: bool
+
+
+@dataclass(frozen=True, slots=True)
+class MaterialCard:
+    """Records, laws and refusals of one material; `card["compressive_modulus"]` is a `Quantity`.
+
+    Parameters
+    ----------
+    material, name : id and the name that people read
+    synthetic : true if any campaign behind it is simulated
+    records, laws, refusals : from all campaigns, side by side
+    campaigns : whom to thank and on which terms
+    """
+
+    material: str
+    name: str
+    synthetic: bool
+    records: tuple[PropertyRecord, ...]
+    laws: tuple[Law, ...] = ()
+    refusals: tuple[Refusal, ...] = ()
+    campaigns: tuple[Credit, ...] = ()
+
+    def keys(self) -> tuple[str, ...]:
+        """Property keys that have a value, sorted."""
+        return tuple(sorted({r.key for r in self.records}))
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.keys())
+
+    def __contains__(self, key: object) -> bool:
+        return any(r.key == key for r in self.records)
+
+    def __getitem__(self, key: str) -> Quantity:
+        """Give the quantity of a key, as `record` without conditions does."""
+        return self.record(key).quantity
+
+    def record(self, key: str, **conditions: Condition | None) -> PropertyRecord:
+        """Give the one record of a key under these conditions.
+
+        Parameters
+        ----------
+        key : property key
+        conditions : of `core.properties.CONDITIONS`, and `campaign`; None wants it not stated.
+            A question that leaves several records and says nothing of the age means the
+            reference age.
+
+        Raises
+        ------
+        MissingProperty : no such record, with the reasons if it was refused; or several
+        """
+        found = [r for r in self.records if r.key == key]
+        if not found:
+            law = any(entry.key == key for entry in self.laws)
+            hint = f"; it has a law, ask for card.law({key!r})" if law else ""
+            raise MissingProperty(self._lacks(key) + hint + _there(self.records))
+        return choose(found, f"{key} of {self.material}", conditions)
+
+    def law(self, key: str, **conditions: Condition | None) -> Law:
+        """Give the one law of a key under these conditions, chosen as `record` does.
+
+        Raises
+        ------
+        MissingProperty : no such law, with the reasons if it was refused; or several
+        """
+        found = [law for law in self.laws if law.key == key]
+        if not found:
+            raise MissingProperty(self._lacks(f"law of {key}", key) + _there(self.laws))
+        return choose(found, f"law of {key} of {self.material}", conditions)
+
+    def _lacks(self, what: str, key: str | None = None) -> str:
+        reasons = "; ".join(refusal_reasons(self.refusals, key or what))
+        return f"{self.material} has no {what}" + (
+            f", it was refused: {reasons}" if reasons else ""
+        )
+
+    def canonical(self) -> MaterialCard:
+        """Bring everything into its fixed order, so that equal content is equal.
+
+        Raises
+        ------
+        CardError : a record of another material, two records under the same conditions, a wrong
+            unit, a condition outside the closed list, a card that hides a synthetic campaign
+        """
+        entries: list[PropertyRecord | Law | Refusal] = [*self.records, *self.laws, *self.refusals]
+        for entry in entries:
+            if entry.material != self.material:
+                raise CardError(
+                    f"a {entry.key} of {entry.material} cannot stand on the card of {self.material}"
+                )
+        if any(c.synthetic for c in self.campaigns) and not self.synthetic:
+            raise CardError(f"{self.material} has a synthetic campaign, its card must say so")
+        return replace(
+            self,
+            records=_in_order(map(doc.canonical_record, self.records)),
+            laws=_in_order(map(doc.canonical_law, self.laws)),
+            refusals=tuple(sorted(self.refusals, key=_refusal_order)),
+            campaigns=tuple(sorted(self.campaigns, key=lambda c: c.campaign)),
+        )
+
+    def to_document(self) -> Document:
+        """Write the card as the JSON object of `docs/card.schema.json`.
+
+        `release` is the first 12 hex digits of the sha256 of everything else in it: two cards
+        with the same release say the same thing.
+        """
+        card = self.canonical()
+        content: Document = {
+            "schema": doc.SCHEMA,
+            "material": card.material,
+            "name": card.name,
+            "synthetic": card.synthetic,
+            "release": "",
+            "campaigns": [asdict(c) for c in card.campaigns],
+            "properties": [doc.record_document(r) for r in card.records],
+            "laws": [doc.law_document(law) for law in card.laws],
+            "refused": [doc.refusal_document(r) for r in card.refusals],
+        }
+        content["release"] = _digest(content)
+        return content
+
+    @property
+    def release(self) -> str:
+        """First 12 hex digits of the sha256 of the content: what the card's document says."""
+        return str(self.to_document()["release"])
+
+    def to_json(self) -> bytes:
+        """Give the bytes of the card's file: the same for the same content."""
+        text = json.dumps(self.to_document(), indent=2, ensure_ascii=False, allow_nan=False)
+        return (text + "\n").encode()
+
+    @classmethod
+    def from_document(cls, document: Mapping[str, Any]) -> MaterialCard:
+        """Read a card back.
+
+        Raises
+        ------
+        CardError : another schema, a missing or unknown field, or a content that is not the one
+            its `release` was made of
+        """
+        if "schema" not in document or document["schema"] != doc.SCHEMA:
+            raise CardError(f"not a card of schema {doc.SCHEMA}, the only one this program reads")
+        _, material, name, synthetic, release, *lists = doc.take(document, _FIELDS, "the card")
+        if release != _digest(document):
+            raise CardError(
+                f"its content is that of release {_digest(document)}, not of {release} as it says: "
+                "it was changed after it was written; take the original card"
+            )
+        campaigns, properties, laws, refused = lists
+        return cls(
+            *(material, name, synthetic),
+            records=doc.read_entries(properties, partial(doc.record_from, material), "properties"),
+            laws=doc.read_entries(laws, partial(doc.law_from, material), "laws"),
+            refusals=doc.read_entries(refused, partial(doc.refusal_from, material), "refused"),
+            campaigns=doc.read_entries(campaigns, _credit_from, "campaigns"),
+        )
+
+
+_FIELDS = (
+    *("schema", "material", "name", "synthetic", "release"),
+    *("campaigns", "properties", "laws", "refused"),
+)
+
+
+def _credit_from(document: Mapping[str, Any]) -> Credit:
+    return Credit(*doc.take(document, [f.name for f in fields(Credit)], "a campaign"))
+
+
+def _digest(document: Mapping[str, Any]) -> str:
+    content = {key: value for key, value in document.items() if key != "release"}
+    return hashlib.sha256(doc.canonical_json(content).encode()).hexdigest()[:12]
+
+
+def _there(entries: Sequence[PropertyRecord | Law]) -> str:
+    return f"; there is {', '.join(sorted({e.key for e in entries})) or 'nothing'}"
+
+
+def _identity(entry: PropertyRecord | Law) -> tuple[str, str, str]:
+    """Give what tells an entry from the others of its card."""
+    conditions = doc.canonical_json(doc.conditions_document(entry.conditions))
+    return entry.key, entry.campaign, conditions
+
+
+def _in_order(entries: Iterable[E]) -> tuple[E, ...]:
+    named = sorted(((_identity(entry), entry) for entry in entries), key=itemgetter(0))
+    for (one, _), (other, _) in pairwise(named):
+        if one == other:
+            raise CardError(f"two entries that nothing tells apart: {' '.join(one)}")
+    return tuple(entry for _, entry in named)
+
+
+def _refusal_order(refusal: Refusal) -> tuple[str, str, str, str]:
+    rest = doc.canonical_json(doc.refusal_document(refusal))
+    return refusal.key, refusal.campaign, refusal.specimen or "", rest
+
+
+def read_card(path: str | Path) -> MaterialCard:
+    """Read a card's file.
+
+    Raises
+    ------
+    CardError : not a file, not JSON, or not a whole and unchanged card; the message names it
+    """
+    try:
+        document = json.loads(Path(path).read_bytes())
+        if not isinstance(document, dict):
+            raise CardError("not a card: a card is one JSON object")
+        return MaterialCard.from_document(document)
+    except OSError as error:
+        raise CardError(f"{path}: {error.strerror}") from error
+    except ValueError as error:  # no UTF-8, no JSON, or a number that JSON does not know
+        raise CardError(f"{path}: not JSON: {error}") from error
+    except CardError as error:
+        raise CardError(f"{path}: {error}") from error

@@ -1,0 +1,261 @@
+"""`materials.sqlite`: written in one piece with the same bytes for the same content, read only.
+
+The bytes depend on the content and on the version of the SQLite library, on nothing else.
+"""
+
+from __future__ import annotations
+
+import difflib
+import json
+import sqlite3
+import weakref
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import count
+from os import PathLike
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self
+
+from pipeline.core.errors import PipelineError
+from pipeline.core.ledger import FileEntry, Provenance
+from pipeline.materials.card import Credit, MaterialCard
+from pipeline.materials.document import CardError
+from pipeline.materials.rows import Owned, by_owner, law_of, record_of, refusal_of
+from pipeline.materials.tables import (
+    APPLICATION_ID,
+    TABLES,
+    VERSION,
+    card_rows,
+    file_rows,
+    provenance_rows,
+)
+
+if TYPE_CHECKING:
+    import xarray
+
+DATABASE_FILE = "materials.sqlite"
+CURVES_FILE = "curves.h5"
+
+_OWNED = (
+    "SELECT * FROM {} WHERE id IN (SELECT id FROM properties WHERE material = ?1 "
+    "UNION ALL SELECT id FROM laws WHERE material = ?1) ORDER BY id, position"
+)
+
+
+class DatabaseError(PipelineError):
+    """A file that is not a database of this program, or not one that it can read."""
+
+
+class MissingMaterial(PipelineError, KeyError):
+    """The database has no such material."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+def write_database(
+    path: Path, cards: Sequence[MaterialCard], files: Sequence[FileEntry], provenance: Provenance
+) -> None:
+    """Write a fresh database; the order of the arguments' elements plays no part.
+
+    The caller synchronises it to the disk and publishes it by renaming: whoever has an older one
+    open goes on reading that.
+
+    Parameters
+    ----------
+    path : the file to make; one that is there is unlinked first, never written into
+    cards : one for each material
+    files : the account of every file under `raw/`
+    provenance : code and configuration that made the cards
+
+    Raises
+    ------
+    CardError : two cards of one material, or a card that does not hold together
+    """
+    if len({card.material for card in cards}) < len(cards):
+        names = [card.material for card in cards]
+        raise CardError(f"two cards of {next(n for n in names if names.count(n) > 1)}")
+    path.unlink(missing_ok=True)
+    connection = sqlite3.connect(path, isolation_level=None)
+    try:
+        connection.executescript(
+            "PRAGMA page_size = 4096; PRAGMA encoding = 'UTF-8'; PRAGMA auto_vacuum = NONE;"
+            # Nobody else knows the file yet: no journal is needed, and who publishes it syncs it.
+            "PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF;"
+            f"PRAGMA application_id = {APPLICATION_ID}; PRAGMA user_version = {VERSION};"
+            f"BEGIN; {TABLES}"
+        )
+        inserts = _inserts(connection)
+        connection.executemany(inserts["release"], provenance_rows(provenance))
+        connection.executemany(inserts["files"], file_rows(files))
+        ids = count(1)
+        for card in sorted(cards, key=lambda card: card.material):
+            for table, row in card_rows(card.to_document(), ids):
+                connection.execute(inserts[table], row)
+        connection.execute("COMMIT")
+    finally:
+        connection.close()
+
+
+def _inserts(connection: sqlite3.Connection) -> dict[str, str]:
+    """Give the statement that fills a row of each table."""
+    tables = connection.execute("SELECT name FROM sqlite_schema WHERE type = 'table'").fetchall()
+    inserts = {}
+    for (table,) in tables:
+        columns = connection.execute(f"PRAGMA table_info({table})").fetchall()
+        inserts[table] = f"INSERT INTO {table} VALUES ({','.join('?' * len(columns))})"
+    return inserts
+
+
+class Database(Mapping[str, MaterialCard]):
+    """All cards of one release, read only: `db["ef50-0t"]["compressive_modulus"]`.
+
+    It keeps reading the release that it was opened on, also when a newer one is published.
+    Use it as a context manager, or let it go: it closes itself.
+    """
+
+    def __init__(self, path: Path, connection: sqlite3.Connection) -> None:
+        self.path = path
+        self._connection = connection
+        self._finalizer = weakref.finalize(self, connection.close)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the file; asking anything afterwards raises `DatabaseError`."""
+        self._finalizer()
+
+    def _rows(self, query: str, *values: str) -> list[Any]:
+        try:
+            return self._connection.execute(query, values).fetchall()
+        except sqlite3.Error as error:
+            raise DatabaseError(f"{self.path}: {error}") from error
+
+    def __len__(self) -> int:
+        return int(self._rows("SELECT count(*) FROM materials")[0][0])
+
+    def __iter__(self) -> Iterator[str]:
+        return (row[0] for row in self._rows("SELECT material FROM materials ORDER BY material"))
+
+    def __contains__(self, material: object) -> bool:
+        query = "SELECT 1 FROM materials WHERE material = ?"
+        return isinstance(material, str) and bool(self._rows(query, material))
+
+    def __getitem__(self, material: str) -> MaterialCard:
+        """Read one card.
+
+        Raises
+        ------
+        MissingMaterial : the database does not hold it; the message names the nearest ones
+        DatabaseError : the database was closed or is damaged
+        """
+        found = self._rows("SELECT name, synthetic FROM materials WHERE material = ?", material)
+        if not found:
+            raise MissingMaterial(self._missing(material))
+        name, synthetic = found[0]
+        owned = Owned(*(by_owner(self._rows(_OWNED.format(t), material)) for t in Owned._fields))
+        records, laws, refusals, campaigns = (
+            self._rows(f"SELECT * FROM {table} WHERE material = ? ORDER BY {order}", material)
+            for table, order in (
+                *(("properties", "id"), ("laws", "id"), ("refusals", "id")),
+                ("campaigns", "campaign"),
+            )
+        )
+        return MaterialCard(
+            *(material, name, bool(synthetic)),
+            records=tuple(record_of(row, owned) for row in records),
+            laws=tuple(law_of(row, owned) for row in laws),
+            refusals=tuple(map(refusal_of, refusals)),
+            campaigns=tuple(Credit(*(*row[1:-1], bool(row[-1]))) for row in campaigns),
+        )
+
+    def _missing(self, material: str) -> str:
+        near = difflib.get_close_matches(material, self, n=3)
+        hint = f"nearest: {', '.join(near)}" if near else f"it holds {len(self)} others"
+        return f"{self.path} has no material {material!r}; {hint}"
+
+    def files(self) -> tuple[FileEntry, ...]:
+        """Give the account of every file under `raw/`, by path."""
+        return tuple(FileEntry(*row) for row in self._rows("SELECT * FROM files ORDER BY path"))
+
+    def provenance(self) -> Provenance:
+        """Say which code and configuration made this release."""
+        version, code, stages, config = self._rows(
+            "SELECT version, code, stages, config FROM release"
+        )[0]
+        return Provenance(
+            version, code, tuple(json.loads(stages).items()), tuple(json.loads(config).items())
+        )
+
+    def curves(self, material: str, technique: str | None = None) -> xarray.Dataset:
+        """Read the reduced curves of one material from `curves.h5` beside the database.
+
+        Returns
+        -------
+        see `curves.read_curves`; the attribute `synthetic` says what the card says
+
+        Raises
+        ------
+        MissingMaterial : the database does not hold it
+        CurvesError : no such file, or not one of curves
+        """
+        from pipeline.materials.curves import read_curves  # h5py: only whoever wants curves pays
+
+        query = "SELECT synthetic FROM materials WHERE material = ?"
+        found = self._rows(query, material)
+        if not found:
+            raise MissingMaterial(self._missing(material))
+        dataset = read_curves(self.path.with_name(CURVES_FILE), material, technique)
+        dataset.attrs["synthetic"] = found[0][0]
+        return dataset
+
+
+def open_database(path: str | PathLike[str]) -> Database:
+    """Open a database for reading.
+
+    Parameters
+    ----------
+    path : `materials.sqlite`, or the processed folder that holds it
+
+    Raises
+    ------
+    DatabaseError : no such file, not a database of this program, damaged, or of another version
+    """
+    # Resolved, so that both files stay those of one release when a link is turned to the next.
+    place = Path(path).resolve()
+    if place.is_dir():
+        place /= DATABASE_FILE
+    if not place.is_file():
+        raise DatabaseError(f"no database {place}; `make all` writes it")
+    try:
+        # A published file never changes (the next one takes its name), so it needs no locks.
+        connection = sqlite3.connect(
+            f"{place.as_uri()}?mode=ro&immutable=1",
+            uri=True,
+            isolation_level=None,
+            check_same_thread=False,
+        )
+        database = Database(place, connection)
+        ((application,),) = connection.execute("PRAGMA application_id").fetchall()
+        ((version,),) = connection.execute("PRAGMA user_version").fetchall()
+    except sqlite3.DatabaseError as error:
+        raise DatabaseError(f"{place} is not a database of materials: {error}") from error
+    if application != APPLICATION_ID:
+        database.close()
+        raise DatabaseError(f"{place} is SQLite, but not a database of materials")
+    if version != VERSION:
+        database.close()
+        mend = "make it again with `make all`" if version < VERSION else "use a newer deamat"
+        raise DatabaseError(
+            f"{place} has version {version} of the tables, this program reads {VERSION}; {mend}"
+        )
+    return database

@@ -1,0 +1,81 @@
+from __future__ import annotations
+
+from pipeline.core.records import Flag
+from pipeline.materials.card import MaterialCard
+from pipeline.materials.present import card_text
+from tests.materials.samples import CREDIT, TWIN, card, modulus, refusal, viscosity_law
+
+
+def test_a_card_is_one_screen() -> None:
+    assert card_text(card()) == (
+        f"""\
+Gel A 10:1 (gel-a), card {card().release}
+soft-2026: Compression of gels, Lab One, CC BY 4.0
+
+property             symbol  value            95 % interval       n  conditions                        flags
+compressive_modulus  Y_c     158.8 ± 1.0 kPa  156.4 to 161.2 kPa  2  age after cure, window 0 to 0.05  [1]
+compressive_modulus  Y_c     171.0 ± 1.2 kPa  168.6 to 173.4 kPa  1  age 2 months, window 0 to 0.05
+handling_time        t_h     6.00 ± 0.50 h    above 5.00 h        1  temperature 23 C
+
+Laws
+  viscosity (mu): polynomial, 1.64 + 7.4e-05 x [Pa.s] with x = time since mixing [s], from 1 to 12 h;
+      temperature 23 C [1]
+
+Flags
+  [1] toe: 2 of 2 specimens, such as A1: slope: 59 kPa up to 1 %
+
+Refused
+  tensile_modulus: 2 samples in the window, 10 are needed (A1, A2)
+"""
+    )
+
+
+def test_a_simulated_card_says_so_on_its_second_line() -> None:
+    lines = card_text(card(synthetic=True, campaigns=(TWIN,))).splitlines()
+    assert lines[1] == "SYNTHETIC: simulated data, not measurements"
+    assert lines[2] == "twin-1: Simulated gels, nobody, CC BY 4.0, synthetic"
+
+
+def test_a_card_that_is_simulated_in_part_names_the_part() -> None:
+    lines = card_text(card(synthetic=True, campaigns=(CREDIT, TWIN))).splitlines()
+    assert lines[1] == "SYNTHETIC in part: twin-1 is simulated, not measured"
+
+
+def test_what_all_values_share_is_told_once() -> None:
+    shared = {"cure": "2 h at 90 C", "age": "after cure"}
+    text = card_text(
+        MaterialCard(
+            *("gel-a", "gel-a", False),
+            records=(
+                modulus(conditions=shared, flags=()),
+                modulus(key="tensile_strength", conditions=shared, campaign="soft-2027", flags=()),
+            ),
+        )
+    )
+    assert text.splitlines()[2:] == [
+        "property             symbol   value            95 % interval       n  conditions  flags",
+        "compressive_modulus  Y_c      158.8 ± 1.0 kPa  156.4 to 161.2 kPa  2  soft-2026",
+        "tensile_strength     sigma_b  158.8 ± 1.0 kPa  156.4 to 161.2 kPa  2  soft-2027",
+        "All values: age after cure, cure 2 h at 90 C",
+    ]
+    assert text.startswith("gel-a, card ")
+
+
+def test_flags_are_numbered_by_name() -> None:
+    records = (
+        modulus(flags=(Flag("toe", "first"), Flag("odd", "one"))),
+        modulus(key="tensile_strength", flags=(Flag("toe", "second"),)),
+    )
+    text = card_text(card(records=records, laws=(), refusals=()))
+    assert text.endswith("\nFlags\n  [1] odd: one\n  [2] toe: first\n")
+    assert [line[-7:].strip() for line in text.splitlines()[4:6]] == ["[1] [2]", "[2]"]
+
+
+def test_a_card_of_refusals_alone() -> None:
+    text = card_text(card(records=(), laws=(), refusals=(refusal(None, "no force at all"),)))
+    assert text.splitlines()[2:] == ["", "Refused", "  tensile_modulus: no force at all"]
+
+
+def test_a_falling_law_reads_as_people_write_it() -> None:
+    law = viscosity_law(coefficients=(4.36, -0.13, 2.0), covariance=((0.0,) * 3,) * 3, flags=())
+    assert "polynomial, 4.36 - 0.13 x + 2 x^2 [Pa.s]" in card_text(card(laws=(law,)))
