@@ -5,7 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
+
+_LOW_IMPEDANCE_ohm = 500.0  # where the makers' tables change from k_a to k_b
+_LOW_FREQUENCY_Hz = 100.0
 
 
 class Declared(BaseModel):
@@ -21,6 +26,74 @@ class Gauge(Declared):
     u_calibration_m: float = Field(default=1e-5, ge=0, description="shared by all specimens")
 
 
+class LcrAccuracy(Declared):
+    r"""What an LCR meter promises: limits of error that grow with the impedance.
+
+    $$ A_e = \big(A A_r + K + K_f + K_L\big) K_c, \qquad
+    K = k_a \frac{1 + v_a/V}{|Z|} \text{ below } 500\ \Omega, \quad
+    K = k_b(f) |Z| (1 + v_b/V) \text{ above}, $$
+
+    all relative here (the makers print percent), K times sqrt(100 Hz / f) below 100 Hz, and A and
+    K doubled at the fast speed. $A_e$ is the limit for |Z| and C, and in absolute terms for D.
+
+    Source: the form, A and the limit for D from the GW Instek LCR-6000 manual, 13.1 and 13.2; its
+    table of K was not found, so K is that of the B&K Precision 894 manual, Table 13 (a meter of
+    the same form; UNI-T's LCR-1000, another one, promises a limit four times as wide at 10 Hz).
+    """
+
+    basic: float = Field(default=5e-4, gt=0, description="A, at slow and medium speed")
+    level_V: tuple[float, float] = Field(
+        default=(0.4, 1.2), description="test levels at which A_r is 1"
+    )
+    other_level_factor: float = Field(default=2.5, ge=1, description="A_r at any other level")
+    low_impedance_ohm: float = Field(default=1e-3, ge=0, description="k_a")
+    low_impedance_V: float = Field(default=0.2, ge=0, description="v_a")
+    high_impedance_per_ohm: tuple[tuple[float, float], ...] = Field(
+        default=((1.2e3, 0.3e-9), (8e3, 1e-9), (150e3, 3e-9)),
+        min_length=1,
+        description="k_b: highest frequency in Hz, and the factor up to there; the last one holds "
+        "beyond",
+    )
+    high_impedance_V: float = Field(default=0.07, ge=0, description="v_b")
+    interpolation: float = Field(default=3e-4, ge=0, description="K_f, open and short trimming")
+    leads: float = Field(default=0.0, ge=0, description="K_L, leads of no length")
+    temperature: float = Field(default=1.0, ge=1, description="K_c, 18 to 28 C")
+    source: str = "A: GW Instek LCR-6000 manual, 13.2; K: B&K Precision 894 manual, Table 13"
+
+    def limit(
+        self,
+        frequency_Hz: NDArray[np.float64],
+        impedance_ohm: NDArray[np.float64],
+        level_V: float,
+        *,
+        fast: bool,
+    ) -> NDArray[np.float64]:
+        """Give the relative limit of error, shape (n,).
+
+        Parameters
+        ----------
+        frequency_Hz, impedance_ohm : f and |Z|, above zero, shape (n,) each
+        level_V : test voltage, rms
+        fast : at the fast speed
+        """
+        ends, factors = (
+            np.array(column) for column in zip(*self.high_impedance_per_ohm, strict=True)
+        )
+        band = np.minimum(np.searchsorted(ends, frequency_Hz), ends.size - 1)
+        k = np.where(
+            impedance_ohm < _LOW_IMPEDANCE_ohm,
+            self.low_impedance_ohm / impedance_ohm * (1.0 + self.low_impedance_V / level_V),
+            factors[band] * impedance_ohm * (1.0 + self.high_impedance_V / level_V),
+        ) * np.sqrt(np.maximum(1.0, _LOW_FREQUENCY_Hz / frequency_Hz))
+        low, high = self.level_V
+        basic = self.basic * (1.0 if low <= level_V <= high else self.other_level_factor)
+        speed = 2.0 if fast else 1.0
+        limit: NDArray[np.float64] = self.temperature * (
+            speed * (basic + k) + self.interpolation + self.leads
+        )
+        return limit
+
+
 class Machine(Declared):
     """What the numbers of a testing machine are good for (relative ones are 1 sigma)."""
 
@@ -28,6 +101,7 @@ class Machine(Declared):
     force_resolution_N: float = Field(default=0.0, ge=0)
     u_force_calibration: float = Field(default=0.005, ge=0, description="relative, shared")
     u_displacement_calibration: float = Field(default=0.002, ge=0, description="relative, shared")
+    impedance: LcrAccuracy = Field(default_factory=LcrAccuracy, description="of an LCR meter")
     source: str = "defaults: an ISO 7500-1 class 1 machine"
 
 

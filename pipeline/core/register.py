@@ -19,7 +19,7 @@ from pipeline.core.errors import RawFileError
 from pipeline.core.instruments import Gauge
 from pipeline.core.quantity import Quantity
 from pipeline.core.records import Condition, Specimen
-from pipeline.core.units import UNITS, si_factor
+from pipeline.core.units import UNITS, known, si_factor
 
 REGISTER_FILE = "specimens.csv"
 REGISTER_FILES = (REGISTER_FILE, "observations.csv")
@@ -149,7 +149,7 @@ def split_unit(label: str) -> tuple[str, str | None]:
     parts = label.split("_")
     for i in range(1, len(parts)):
         unit = "_".join(parts[i:])
-        if unit in UNITS:
+        if known(unit):  # either mu
             return "_".join(parts[:i]), unit
     return label, None
 

@@ -7,6 +7,7 @@ in this table is an error, never a guess; `pint` checks the table in the tests.
 from __future__ import annotations
 
 import difflib
+import math
 
 from pipeline.core.errors import PipelineError
 
@@ -65,13 +66,20 @@ UNITS: dict[str, tuple[str, float, float]] = {
     "Hz": ("Hz", 1.0, 0.0),
     "kHz": ("Hz", 1e3, 0.0),
     "V": ("V", 1.0, 0.0),
+    "mV": ("V", 1e-3, 0.0),
     "kV": ("V", 1e3, 0.0),
     "A": ("A", 1.0, 0.0),
     "mA": ("A", 1e-3, 0.0),
     "uA": ("A", 1e-6, 0.0),
     "F": ("F", 1.0, 0.0),
+    "uF": ("F", 1e-6, 0.0),
+    "nF": ("F", 1e-9, 0.0),
     "pF": ("F", 1e-12, 0.0),
     "ohm": ("ohm", 1.0, 0.0),
+    "kohm": ("ohm", 1e3, 0.0),
+    "Mohm": ("ohm", 1e6, 0.0),
+    "rad": ("rad", 1.0, 0.0),
+    "deg": ("rad", math.pi / 180.0, 0.0),
     "V/m": ("V/m", 1.0, 0.0),
     "V/um": ("V/m", 1e6, 0.0),
     "V_per_um": ("V/m", 1e6, 0.0),

@@ -90,3 +90,10 @@ def test_multi_word_units_and_temperatures() -> None:
     (specimen,) = _read(text).specimens
     assert specimen.numbers["speed_m_per_s"].value == pytest.approx(2e-4)
     assert specimen.numbers["temperature_K"].value == pytest.approx(295.15)
+
+
+@pytest.mark.parametrize("mu", ["\u00b5", "\u03bc"])
+def test_either_letter_mu_is_a_unit(mu: str) -> None:
+    text = f"specimen,material,thickness_{mu}m\na,m,300\n"
+    register = read_register(text.encode(), "c/t/specimens.csv", "c", "t", ("thickness_m",), {})
+    assert register.specimens[0].numbers["thickness_m"].value == pytest.approx(300e-6)
