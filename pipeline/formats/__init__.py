@@ -17,6 +17,9 @@ FORMATS: tuple[Format, ...] = tuple(
     import_module(f"{__name__}.{module}").FORMAT
     for module in (
         "bluehill",
+        "e4980a",
+        "lcr6000",
+        "lcr_csv",
         "mark10",
         "mts",
         "nexygen",
