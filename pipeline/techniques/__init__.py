@@ -1,9 +1,10 @@
 """The rooms: one module per technique, and the one list of them."""
 
 from pipeline.core.technique import Technique
-from pipeline.techniques import compression, tension
+from pipeline.techniques import compression, permittivity, tension
 
 TECHNIQUES: dict[str, Technique] = {
     "compression": compression.TECHNIQUE,
+    "permittivity": permittivity.TECHNIQUE,
     "tension": tension.TECHNIQUE,
 }

@@ -1,0 +1,301 @@
+"""One film: its sweep to permittivity and loss at the frequency of the card."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from pipeline.core.errors import FitRefused
+from pipeline.core.quantity import Contribution, Quantity
+from pipeline.core.records import (
+    Condition,
+    Detail,
+    Flag,
+    FloatArray,
+    MeasuredValue,
+    Measurement,
+    Recording,
+    Specimen,
+)
+from pipeline.core.technique import Context
+from pipeline.estimators.sweep import Position, position, series_resistance, slope_per_decade
+from pipeline.techniques._stress_strain import nothing_measured, recorded, refusal, relative_lines
+from pipeline.techniques.permittivity.config import LOSS, PERMITTIVITY, PermittivityConfig
+from pipeline.techniques.permittivity.film import Film, film_flags, film_of
+from pipeline.techniques.permittivity.spectrum import Spectrum, permittivity_of, spectrum_of
+
+_LIMIT_TO_SIGMA = math.sqrt(3.0)  # a limit without further knowledge: rectangular, GUM 4.3.7
+_RESISTANCE_TOLD = 3.0  # standard errors from which a series resistance is told from noise
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """A film's spectrum, read at the frequency of the card.
+
+    Parameters
+    ----------
+    permittivity, loss : of the film at every point of the spectrum, shape (n,) each `[1]`
+    where : the card's frequency in the spectrum
+    """
+
+    film: Film
+    spectrum: Spectrum
+    permittivity: FloatArray
+    loss: FloatArray
+    where: Position
+    config: PermittivityConfig
+
+    @property
+    def conditions(self) -> dict[str, Condition]:
+        """What the technique itself fixes."""
+        return {"frequency_Hz": self.config.card_frequency_Hz}
+
+    @property
+    def lines(self) -> tuple[int, int]:
+        """First and last line of the file that the card's value rests on."""
+        lines = self.spectrum.lines[self.where.indices]
+        return int(lines.min()), int(lines.max())
+
+    @property
+    def how(self) -> str:
+        """How the card's frequency was reached, in words."""
+        way = "interpolated in log f to" if self.where.interpolated else "measured at"
+        return f"{way} {self.config.card_frequency_Hz:g} Hz, from {self.spectrum.mode}"
+
+    @property
+    def impedance_ohm(self) -> float:
+        """Modulus of the impedance at the card's frequency."""
+        return self.where.of(self.spectrum.impedance_ohm)
+
+    def edge_fraction(self, edge_field: str) -> float:
+        """Part of the capacitance that is edge field, by one of the corrections `[1]`."""
+        bare, _ = permittivity_of(self.spectrum.capacitance_F, self.film, "none")
+        corrected, _ = permittivity_of(self.spectrum.capacitance_F, self.film, edge_field)
+        return 1.0 - self.where.of(corrected) / self.where.of(bare)
+
+
+def reduce(specimen: Specimen, recording: Recording | None, context: Context) -> Measurement:
+    r"""Reduce one film to permittivity and loss; the whole sweep is kept as its curve.
+
+    $\epsilon_r = C_p d / (\epsilon_0 A)$ and $\tan\delta$ at the card's frequency, measured there
+    or interpolated in log f, never extrapolated. The meter's limit of error $A_e(|Z|, f)$ counts as
+    rectangular, $u = A_e / \sqrt 3$, shared by all films: the same meter errs alike.
+
+    Parameters
+    ----------
+    specimen : see `film_of` for the numbers
+    recording : frequency and one pair of `pipeline.estimators.impedance.PAIRS`
+    context : with a `PermittivityConfig` and the compressive modulus among its needs
+
+    Source: ASTM D150; LCR-6000 manual, 13.1 for the limits of C and D.
+    """
+    config: PermittivityConfig = context.config
+    try:
+        file = recorded(recording)
+        film = film_of(specimen.numbers, context)
+        spectrum = spectrum_of(file, context.machine.impedance, config)
+    except FitRefused as error:
+        return nothing_measured(specimen, (PERMITTIVITY, LOSS), error, recording)
+    permittivity, loss = permittivity_of(spectrum.capacitance_F, film, config.edge_field)
+    curve = {
+        "frequency_Hz": spectrum.frequency_Hz,
+        "relative_permittivity": permittivity,
+        "loss_tangent": loss,
+    }
+    try:
+        where = _card_position(spectrum, config)
+    except FitRefused as error:
+        at: dict[str, Condition] = {"frequency_Hz": config.card_frequency_Hz}
+        refusals = tuple(refusal(specimen, key, error, at) for key in (PERMITTIVITY, LOSS))
+        return Measurement(specimen, (), refusals, curve, file.source)
+    reading = Reading(film, spectrum, permittivity, loss, where, config)
+    flags = file.flags + _flags(reading, "level_V" in file.metadata)
+    values = (_permittivity(reading, flags), _loss(reading, flags))
+    return Measurement(specimen, values, (), curve, file.source)
+
+
+def _card_position(spectrum: Spectrum, config: PermittivityConfig) -> Position:
+    """Find the card's frequency; a point that was over-range there is not replaced by neighbours.
+
+    Raises
+    ------
+    FitRefused : it was over-range, or is not in the sweep
+    """
+    card, tolerance = config.card_frequency_Hz, config.frequency_tolerance
+    lost = spectrum.lost_Hz[np.abs(spectrum.lost_Hz / card - 1.0) <= tolerance]
+    if lost.size and np.abs(spectrum.frequency_Hz / card - 1.0).min() > tolerance:
+        raise FitRefused(
+            f"the point at {lost[0]:g} Hz is over-range by the meter's own word; choose a range "
+            "that holds the film's impedance there, or a larger film",
+            {"points": int(spectrum.frequency_Hz.size)},
+        )
+    return position(spectrum.frequency_Hz, card, tolerance, config.widest_gap_decades)
+
+
+def _permittivity(reading: Reading, flags: tuple[Flag, ...]) -> MeasuredValue:
+    config, spectrum = reading.config, reading.spectrum
+    value = reading.where.of(reading.permittivity)
+    limit = reading.where.of(spectrum.limit * np.hypot(1.0, spectrum.loss))
+    edge = config.u_edge_field * reading.edge_fraction(config.edge_field)
+    budget = relative_lines(
+        value,
+        (
+            *reading.film.budget,
+            Contribution("LCR meter", limit / _LIMIT_TO_SIGMA, shared=True),
+            Contribution("edge field", edge, shared=True),
+        ),
+    )
+    flags += film_flags(reading.film, config) + _edge_flags(reading)
+    if limit > config.accuracy_flag:
+        flags += (
+            Flag(
+                "meter-limit",
+                f"at |Z| = {reading.impedance_ohm:.2g} ohm the meter promises no better than "
+                f"+- {100 * limit:.2g} %; check it against a reference capacitor of that "
+                "impedance and declare the result",
+            ),
+        )
+    edge_words = (
+        "not corrected" if config.edge_field == "none" else f"of a {config.edge_field} film"
+    )
+    return MeasuredValue(
+        key=PERMITTIVITY,
+        quantity=Quantity.from_budget(value, "1", budget),
+        budget=budget,
+        method=f"C d / (eps0 A) {reading.how}; {reading.film.correction}; edge field {edge_words}",
+        conditions=reading.conditions,
+        lines=reading.lines,
+        diagnostics={**_film_diagnostics(reading, value), **_dependence(reading, value)},
+        flags=flags,
+    )
+
+
+def _loss(reading: Reading, flags: tuple[Flag, ...]) -> MeasuredValue:
+    spectrum = reading.spectrum
+    value = reading.where.of(reading.loss)
+    u = reading.where.of(spectrum.limit * (1.0 + np.abs(spectrum.loss))) / _LIMIT_TO_SIGMA
+    if abs(value) < 2.0 * u:
+        flags += (
+            Flag(
+                "loss-unresolved",
+                f"{value:.2g}, where the meter tells losses to +- {2 * u:.2g}: not told from zero",
+            ),
+        )
+    budget = (Contribution("LCR meter", u, shared=True),)
+    return MeasuredValue(
+        key=LOSS,
+        quantity=Quantity.from_budget(value, "1", budget),
+        budget=budget,
+        method=f"G / (omega C) {reading.how}",
+        conditions=reading.conditions,
+        lines=reading.lines,
+        diagnostics={"points": spectrum.frequency_Hz.size},
+        flags=flags,
+    )
+
+
+def _film_diagnostics(reading: Reading, value: float) -> dict[str, Detail]:
+    film, spectrum = reading.film, reading.spectrum
+    return {
+        "points": spectrum.frequency_Hz.size,
+        "over_range_points": spectrum.lost_Hz.size,
+        "thickness_m": film.thickness_m,
+        "thickness_read_m": film.read_m,
+        "squeeze": film.squeeze,
+        "relative_permittivity_if_film_stuck": value * film.sticking_m / film.thickness_m,
+        "aspect": film.aspect,
+        "impedance_ohm": reading.impedance_ohm,
+        "meter_limit": reading.where.of(spectrum.limit),
+        "edge_field_flush": reading.edge_fraction("flush"),
+        "edge_field_overhanging": reading.edge_fraction("overhanging"),
+    }
+
+
+def _dependence(reading: Reading, value: float) -> dict[str, Detail]:
+    """Permittivity at the stated frequencies, slope per decade, resistance in series."""
+    config, spectrum, curve = reading.config, reading.spectrum, reading.permittivity
+    f, limit = spectrum.frequency_Hz, spectrum.limit
+    found: dict[str, Detail] = {}
+    for stated in config.stated_frequencies_Hz:
+        try:
+            at = position(f, stated, config.frequency_tolerance, config.widest_gap_decades)
+        except FitRefused:
+            continue  # a sweep that does not reach so far says nothing there
+        found[f"relative_permittivity_{stated:g}_Hz"] = at.of(curve)
+    slope, u_slope = slope_per_decade(f, curve, curve * limit)
+    by_meter = math.hypot(reading.where.of(limit), float(limit[-1])) / _LIMIT_TO_SIGMA
+    found |= {
+        "slope_per_decade": slope,
+        "u_slope_per_decade": u_slope,
+        "top_frequency_Hz": float(f[-1]),
+        "change_to_top_frequency": float(curve[-1]) / value - 1.0,
+        "u_change_by_meter": by_meter,
+    }
+    resistance = _resistance(spectrum)
+    if resistance is not None:
+        found |= {"series_resistance_ohm": resistance[0], "u_series_resistance_ohm": resistance[1]}
+    return found
+
+
+def _resistance(spectrum: Spectrum) -> tuple[float, float] | None:
+    return series_resistance(spectrum.frequency_Hz, spectrum.series_capacitance_F, spectrum.loss)
+
+
+def _flags(reading: Reading, level_said: bool) -> tuple[Flag, ...]:
+    """Everything a reader of both values must know."""
+    config, where = reading.config, reading.where
+    flags = _resistance_flags(reading.spectrum, config)
+    if where.interpolated:
+        low, high = reading.spectrum.frequency_Hz[where.indices[[0, -1]]]
+        flags += (
+            Flag(
+                "interpolated",
+                f"{config.card_frequency_Hz:g} Hz lies between {low:g} and {high:g} Hz, which "
+                "were measured",
+            ),
+        )
+    if not level_said:
+        flags += (
+            Flag(
+                "level-declared",
+                f"the file does not say the test level; {config.level_V:g} V is declared",
+            ),
+        )
+    return flags
+
+
+def _edge_flags(reading: Reading) -> tuple[Flag, ...]:
+    config = reading.config
+    flush, overhanging = (reading.edge_fraction(edge) for edge in ("flush", "overhanging"))
+    if config.edge_field != "none" or flush <= config.edge_flag:
+        return ()
+    return (
+        Flag(
+            "edge-field",
+            f"not corrected: by ASTM D150 eps_r is {100 * flush:.2g} % too high for a film "
+            f"cut flush with the plates, {100 * overhanging:.2g} % for a larger one",
+        ),
+    )
+
+
+def _resistance_flags(spectrum: Spectrum, config: PermittivityConfig) -> tuple[Flag, ...]:
+    """Flag a loss that rises in proportion to f at the top of the sweep while C_p falls."""
+    found = _resistance(spectrum)
+    if found is None:
+        return ()
+    resistance, u = found
+    top, series = float(spectrum.frequency_Hz[-1]), float(spectrum.series_capacitance_F[-1])
+    added = 2.0 * math.pi * top * series * resistance
+    if not (added > config.series_loss_flag and resistance > _RESISTANCE_TOLD * u):
+        return ()
+    drop = 1.0 - float(spectrum.capacitance_F.real[-1]) / series
+    return (
+        Flag(
+            "series-resistance",
+            f"loss rises in proportion to frequency up to {top:g} Hz, as {resistance:.3g} ohm "
+            f"(+- {2 * u:.2g}) in series with the film do: there it adds {added:.2g} to the loss "
+            f"and C_p is {100 * drop:.2g} % low; look at electrodes, leads and contacts",
+        ),
+    )

@@ -1,0 +1,152 @@
+"""A recorded sweep as complex capacitance, and that as complex permittivity."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pipeline.core.errors import FitRefused
+from pipeline.core.instruments import LcrAccuracy
+from pipeline.core.records import FloatArray, Recording
+from pipeline.core.units import from_si
+from pipeline.estimators.edge_field import edge_terms, vacuum_capacitance
+from pipeline.estimators.impedance import (
+    PAIRS,
+    ComplexArray,
+    complex_capacitance,
+    impedance,
+    loss_tangent,
+)
+from pipeline.techniques.permittivity.config import PermittivityConfig
+from pipeline.techniques.permittivity.film import Film
+
+_FAST = "fast"
+
+
+@dataclass(frozen=True, slots=True)
+class Spectrum:
+    """The usable points of a sweep in rising order of frequency.
+
+    Parameters
+    ----------
+    frequency_Hz, capacitance_F : f and $C^* = C_p (1 - j D)$, shape (n,) each
+    lines : of the file, counted from 1, shape (n,)
+    limit : relative limit of error of the meter at each point, shape (n,)
+    mode : what the meter showed (`Cp-D`)
+    lost_Hz : frequencies of the points that the meter called over-range, shape (m,)
+    """
+
+    frequency_Hz: FloatArray
+    capacitance_F: ComplexArray
+    lines: NDArray[np.intp]
+    limit: FloatArray
+    mode: str
+    lost_Hz: FloatArray
+
+    @property
+    def loss(self) -> FloatArray:
+        """Loss tangent of what is between the plates, shape (n,) `[1]`."""
+        return loss_tangent(self.capacitance_F)
+
+    @property
+    def series_capacitance_F(self) -> FloatArray:
+        """Capacitance of the circuit in series, which a resistance there leaves alone, (n,)."""
+        return self.capacitance_F.real * (1.0 + self.loss**2)
+
+    @property
+    def impedance_ohm(self) -> FloatArray:
+        """Modulus of the impedance, shape (n,) `[ohm]`."""
+        return np.abs(impedance(self.frequency_Hz, self.capacitance_F))
+
+
+def spectrum_of(
+    recording: Recording, accuracy: LcrAccuracy, config: PermittivityConfig
+) -> Spectrum:
+    """Take the usable points of a recording as complex capacitance.
+
+    Raises
+    ------
+    FitRefused : no pair that gives a capacitance, fewer points than declared, or points without a
+        positive capacitance
+    """
+    columns = recording.columns
+    modes = [m for m, p in PAIRS.items() if p.primary in columns and p.secondary in columns]
+    if "frequency_Hz" not in columns or len(modes) != 1:
+        raise FitRefused(
+            f"the file holds {', '.join(columns)}, where a frequency and one of "
+            f"{', '.join(PAIRS)} belong"
+        )
+    pair = PAIRS[modes[0]]
+    frequency = columns["frequency_Hz"]
+    good = np.ones(frequency.size, dtype=np.bool_)
+    if "over_range" in columns:
+        good = columns["over_range"] == 0.0
+    if np.count_nonzero(good) < config.min_points:
+        raise FitRefused(
+            f"{np.count_nonzero(good)} of {frequency.size} points are usable, "
+            f"{config.min_points} are needed; measure again in a range that the meter holds",
+            {"points": int(np.count_nonzero(good)), "points_needed": config.min_points},
+        )
+    order = np.flatnonzero(good)[np.argsort(frequency[good], kind="stable")]
+    f = frequency[order]
+    capacitance = complex_capacitance(
+        modes[0], f, columns[pair.primary][order], columns[pair.secondary][order]
+    )
+    lines = recording.source.first_line + order
+    _insist_on_capacitance(f, capacitance, lines)
+    limit = accuracy.limit(
+        f, np.abs(impedance(f, capacitance)), _level_V(recording, config), fast=_is_fast(recording)
+    )
+    return Spectrum(f, capacitance, lines, limit, modes[0], frequency[~good])
+
+
+def _level_V(recording: Recording, config: PermittivityConfig) -> float:
+    """Test level: what the file says, else what the laboratory declares."""
+    said = recording.metadata
+    return float(said["level_V"]) if "level_V" in said else config.level_V
+
+
+def _is_fast(recording: Recording) -> bool:
+    return "speed" in recording.metadata and recording.metadata["speed"] == _FAST
+
+
+def _insist_on_capacitance(
+    frequency_Hz: FloatArray, capacitance_F: ComplexArray, lines: NDArray[np.intp]
+) -> None:
+    wrong = np.flatnonzero(~(capacitance_F.real > 0.0))
+    if wrong.size:
+        at = int(wrong[0])
+        raise FitRefused(
+            f"{wrong.size} of {frequency_Hz.size} points have no positive capacitance, first "
+            f"{from_si(float(capacitance_F.real[at]), 'pF'):.4g} pF at {frequency_Hz[at]:g} Hz "
+            f"(line {lines[at]}): not a film between plates; check open and short trimming, the "
+            "leads, and the function that the file names",
+            {"points_without_capacitance": int(wrong.size)},
+        )
+
+
+def permittivity_of(
+    capacitance_F: ComplexArray, film: Film, edge_field: str
+) -> tuple[FloatArray, FloatArray]:
+    r"""Relative permittivity and loss tangent of the film.
+
+    $\epsilon_r^* = (C^* - a) / (C_v + b)$ with the empty plates' $C_v = \epsilon_0 A / d$ and the
+    edge's $C_e^* = a + b\,\epsilon_r^*$; without an edge field a = b = 0.
+
+    Parameters
+    ----------
+    capacitance_F : $C^*$, shape (n,)
+    edge_field : `"none"`, `"flush"` or `"overhanging"`
+
+    Returns
+    -------
+    permittivity and loss tangent, shape (n,) each `[1]`
+    """
+    a, b = 0.0, 0.0
+    if edge_field != "none":
+        a, b = edge_terms(edge_field, film.thickness_m, film.perimeter_m)
+    vacuum = vacuum_capacitance(film.area_m2, film.thickness_m)
+    permittivity = (capacitance_F - a) / (vacuum + b)
+    return permittivity.real.copy(), loss_tangent(permittivity)
