@@ -13,6 +13,7 @@ from pathlib import Path
 from pipeline.core.errors import ConfigError
 from pipeline.twin.compression import compression_part
 from pipeline.twin.part import SYNTHETIC, Part
+from pipeline.twin.permittivity import permittivity_part
 from pipeline.twin.quirks import Quirk
 from pipeline.twin.tension import tension_part
 from pipeline.twin.writers import manifest
@@ -21,7 +22,7 @@ NAME = "sylgard-2022-twin"
 SEED = 2025  # the first from 2022 on whose every 95 % interval holds its truth: docs/adr/0007
 
 # One file of this package per technique, each with its own random streams.
-PARTS: tuple[Callable[[int], Part], ...] = (compression_part, tension_part)
+PARTS: tuple[Callable[[int], Part], ...] = (compression_part, tension_part, permittivity_part)
 
 _CAMPAIGN = """\
 title = "Simulated compression and tension of six Sylgard compositions"

@@ -16,20 +16,22 @@ Quirk = Callable[[Mapping[str, bytes]], Mapping[str, bytes]]
 
 def cut_short(path: str) -> Quirk:
     """End a file inside its last number, as an interrupted copy does."""
-    return _altered(path, lambda data: data.rstrip(b'\r\n"')[:-1])
+    return altered(path, lambda data: data.rstrip(b'\r\n"')[:-1])
 
 
 def open_ended(path: str) -> Quirk:
     """Leave the last line end out, as some exporters do."""
-    return _altered(path, lambda data: data.rstrip(b"\r\n"))
+    return altered(path, lambda data: data.rstrip(b"\r\n"))
 
 
 def as_utf16(path: str) -> Quirk:
     """Write the same text in UTF-16 with its byte order mark, as some Windows programs do."""
-    return _altered(path, lambda data: codecs.BOM_UTF16_LE + data.decode().encode("utf-16-le"))
+    return altered(path, lambda data: codecs.BOM_UTF16_LE + data.decode().encode("utf-16-le"))
 
 
-def _altered(path: str, change: Callable[[bytes], bytes]) -> Quirk:
+def altered(path: str, change: Callable[[bytes], bytes]) -> Quirk:
+    """Make a quirk of what it does to the bytes of one file."""
+
     def quirk(contents: Mapping[str, bytes]) -> Mapping[str, bytes]:
         if path not in contents:
             raise ConfigError(f"a quirk names {path!r}, which the campaign does not hold")

@@ -52,6 +52,41 @@ def bluehill_csv(
     return _lines(head + body, "\r\n")
 
 
+def lcr6000_log(
+    remark: str,
+    function: str,
+    frequency_Hz: FloatArray,
+    primary: FloatArray,
+    secondary: FloatArray,
+) -> bytes:
+    """Write the PC-logged replies of a GW Instek LCR-6020 at 1 V and slow speed.
+
+    Parameters
+    ----------
+    remark : first line of the header
+    function : what `FUNC?` replies, such as `Cp-D`
+    frequency_Hz, primary, secondary : shape (n,) each, in SI
+    """
+    head = [
+        f"# {remark}",
+        "# *IDN? => LCR-6020,REV C1.06,SIMULATED,Good Will Instrument Co., Ltd.",
+        f"# FUNC? => {function}",
+        "# LEV:VOLT? => 1.000e+00V",
+        "# APER? => SLOW,1",
+    ]
+    rows = zip(frequency_Hz.tolist(), primary.tolist(), secondary.tolist(), strict=True)
+    return _lines(head + [f"{f:.5e},{a:+.5e},{b:+.5e},OK" for f, a, b in rows], "\n")
+
+
+def lcr_csv(
+    remark: str, frequency_Hz: FloatArray, capacitance_F: FloatArray, loss_tangent: FloatArray
+) -> bytes:
+    """Write a sweep as a plain table: `frequency_Hz,Cp_F,D` under a remark."""
+    rows = zip(frequency_Hz.tolist(), capacitance_F.tolist(), loss_tangent.tolist(), strict=True)
+    body = [f"{f:.6g},{c:.6e},{d:.6f}" for f, c, d in rows]
+    return _lines([f"# {remark}", "frequency_Hz,Cp_F,D", *body], "\n")
+
+
 def register_csv(rows: Sequence[Mapping[str, str]]) -> bytes:
     """Write a register: one row per specimen, columns as in the first row."""
     text = io.StringIO()
