@@ -25,7 +25,7 @@ SEED = 2025  # the first from 2022 on whose every 95 % interval holds its truth:
 PARTS: tuple[Callable[[int], Part], ...] = (compression_part, tension_part, permittivity_part)
 
 _CAMPAIGN = """\
-title = "Simulated compression and tension of six Sylgard compositions"
+title = "Simulated characterisation of the Sylgard compositions of Sikulskyi et al. 2022"
 laboratory = "none: simulated by deamat's twin"
 licence = "CC BY 4.0"
 source = "simulated about the properties that Sikulskyi et al. 2022 print (Front. Robot. AI \
