@@ -92,5 +92,5 @@ def test_files_of_other_instruments_are_not_claimed(shared: Path) -> None:
     assert len(paths) > 20
     for path in paths:
         head = RawFile(path.name, path.read_bytes()).head
-        machines = [form.name for form in FORMATS if form.recognises(head)]
+        machines = [f.name for f in FORMATS if f.name in BY_NAME and f.recognises(head)]
         assert machines == [], path
