@@ -2,7 +2,8 @@
 
 The formulas stand in `weibull_conditional`. An interval at 95 % covers the truth in 95 % of
 samples, however small, when the sample is complete or all tests stopped at the last failure
-(type II); with other censoring it is an approximation (94 to 95 % in simulation).
+(type II); with other censoring it is an approximation (94 to 96 % in
+simulation, the misses not equally shared between the two sides).
 """
 
 from __future__ import annotations
@@ -133,7 +134,7 @@ class Inference:
         return Interval(estimate, low, high, self.level, exact, self.fit.warnings + more)
 
     def _extrapolation(self, p: float) -> Warnings:
-        if p >= 1.0 / self.fit.n:
+        if p * self.fit.n > 1.0 - 1e-9:
             return ()
         detail = f"p = {p:.2g} is below 1/n = {1 / self.fit.n:.2g}: it rests on the Weibull form"
         return (("extrapolated", detail),)

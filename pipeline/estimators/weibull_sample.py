@@ -125,8 +125,8 @@ def _check_failures(failures: FloatArray, n: int) -> None:
         )
     if distinct < MIN_DISTINCT:
         raise FitRefused(
-            f"{distinct} distinct failures in {n} values; at least {MIN_DISTINCT} are needed: "
-            "test more specimens, or read the instrument to more digits",
+            f"only {distinct} distinct failure(s) among {n} values; at least {MIN_DISTINCT} are "
+            "needed: test more specimens, or read the instrument to more digits",
             {"n": n, "failures": failures.size, "distinct": distinct},
         )
     spread = float((failures.max() - failures.min()) / failures.max())
@@ -166,7 +166,7 @@ def censoring_of(values: FloatArray, failed: BoolArray) -> Censoring:
 
 def sample_warnings(values: FloatArray, failed: BoolArray) -> Warnings:
     """Say what weakens a fit that is still given: few failures, coarse rounding."""
-    failures = values[failed]
+    failures = values[failed] / values.max()  # so that squares of tiny values do not vanish
     distinct = np.unique(failures)
     found = []
     if failures.size < FEW_FAILURES:
