@@ -1,8 +1,8 @@
 """Does the Weibull form fit, and is the weakest specimen too weak for it? Nothing is ever deleted.
 
 Both statistics are computed after fitting and compared with simulated samples of the same size and
-censoring, drawn with a fixed seed and kept: the same question gets the same answer. A large p-value proves
-little: with 20 specimens a lognormal truth is told from a Weibull in one sample out of five.
+censoring, drawn with a fixed seed and kept: the same question gets the same answer. A large p-value
+proves little: with 20 specimens a lognormal truth is told from a Weibull in one sample of five.
 
 Source: Anderson and Darling, J. Am. Stat. Assoc. 49 (1954) 765-769; Pettitt and Stephens,
 Biometrika 63 (1976) 291-298 for censored samples.

@@ -3,10 +3,11 @@
 The maximum-likelihood shape is too high by 45 % with 5 specimens and by 8 % with 20. Two remedies:
 Ross' factor, made for complete samples, and the modified profile likelihood, which also holds for
 censored ones. For complete samples Ross is the better (bias below 1 % at n = 5, against 5 %; and
-the smaller spread), so that is used there; the other one takes over as soon as one specimen is
-censored (bias below 2 % for type II; at limits set beforehand it overshoots, to -4 % with 20
-specimens and -9 % with 10 when a quarter is censored). Print the result beside the maximum-likelihood shape, never instead of it: intervals,
-quantiles and area scaling belong to the fit.
+the smaller spread), so that is used there. The other one takes over as soon as one specimen is
+censored: bias below 3 % for type II; where limits were set beforehand and a quarter is censored it
+overshoots, to -4 % with 20 specimens and -9 % with 10. Print the result beside the
+maximum-likelihood shape, never instead of it: intervals, quantiles and area scaling belong to the
+fit.
 
 Source: Ross, IEEE Trans. Dielectr. Electr. Insul. 3 (1996) 28-42; Yang and Xie, Statistics and
 Computing 13 (2003) 177-184 on the modified profile likelihood.
