@@ -17,10 +17,10 @@ A1, A10 = np.log(-np.log1p(-0.01)), np.log(-np.log1p(-0.1))
 
 
 def on_a_fine_grid(x: FloatArray, failed: BoolArray, a: float, t: float) -> tuple[float, float]:
-    """P(ln x_p <= t) and, for a shape of exp(a), P(shape <= exp(a)), with 100001 nodes."""
+    """P(ln x_p <= t) and, for a shape of exp(a), P(shape <= exp(a)), with 50001 nodes."""
     z = np.log(x / x.max())
     r = int(failed.sum())
-    w = np.linspace(-14.0, 8.0, 100_001)
+    w = np.linspace(-14.0, 8.0, 50_001)
     k = np.exp(w)
     log_sum = np.log(sum(np.exp(k * value) for value in z))
     log_density = (r - 1) * w + k * z[failed].sum() - r * log_sum
@@ -42,7 +42,7 @@ SAMPLES = {
     "8 stopped at 6": simulated(8, 1, seed=13, stop_at=6),
     "20 complete": simulated(20, 1, seed=14),
     "20 of shape 0.5": simulated(20, 1, seed=15, shape=0.5),
-    "100 stopped at 70": simulated(100, 1, seed=16, stop_at=70),
+    "70 of 100": simulated(100, 1, seed=16, stop_at=70),
 }
 
 
@@ -54,7 +54,7 @@ def test_bounds_have_the_tail_probabilities_of_a_fine_grid(
     given = one(values, failed)
     for bound, tail in zip(given.shape(0.95), (0.025, 0.975), strict=True):
         assert on_a_fine_grid(values, failed, np.log(bound).item(), 0.0)[1] == pytest.approx(
-            tail, abs=2e-7
+            tail, abs=5e-7
         )
     for a in (0.0, A10, A1, np.log(1e-6)):
         bounds = given.quantile(a, 0.95)
@@ -103,7 +103,7 @@ def test_both_equations_by_adaptive_quadrature_at_twenty_digits() -> None:
     ("n", "stop_at"), [(5, None), (20, None), (8, 6)], ids=["5", "20", "8 stopped at 6"]
 )
 def test_intervals_cover_the_truth_as_often_as_they_say(n: int, stop_at: int | None) -> None:
-    x, censored = simulated(n, 4000, seed=21, stop_at=stop_at)
+    x, censored = simulated(n, 3000, seed=21, stop_at=stop_at)
     blocks = condition(x, None if stop_at is None else censored)
     hazard_at_60 = 8.0 * np.log(60.0 / 97.0)
     questions = {
@@ -115,7 +115,7 @@ def test_intervals_cover_the_truth_as_often_as_they_say(n: int, stop_at: int | N
     }
     for name, (truth, bounds) in questions.items():
         low, high = np.concatenate(bounds, axis=1)
-        # one standard error of 4000 repetitions is 0.34 %
+        # one standard error of 3000 repetitions is 0.40 %
         assert 0.935 < np.mean((low <= truth) & (truth <= high)) < 0.965, name
         assert 0.015 < np.mean(truth < low) < 0.035, name
 
