@@ -13,6 +13,7 @@ from pipeline.formats import FORMATS
 from pipeline.formats.detect import detect
 from pipeline.formats.documentation import contradictions, stated_units
 from pipeline.formats.rawfile import RawFile
+from tests.formats.samples import BY_NAME
 
 PHANTOM = {
     "time_s": 1.0,
