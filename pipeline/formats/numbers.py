@@ -19,6 +19,10 @@ from pipeline.formats.rawfile import RawFile
 
 _DIGITS = b"0123456789+-eE "
 _CHUNK = 1 << 20  # bytes parsed at a time: the parser's workspace is some ten times its text
+# One parser for all files: the fresh pages of a new one cost as much as the parsing. It refuses to
+# parse while something that it parsed is still referred to.
+_PARSER = simdjson.Parser()
+_RETURN, _LINE = b"\r\n"
 
 
 def read_block(file: RawFile, first: int, columns: int, dialect: Dialect) -> FloatArray:
@@ -38,27 +42,27 @@ def read_block(file: RawFile, first: int, columns: int, dialect: Dialect) -> Flo
     RawFileError : no rows, or anything in them that is not a number for certain
     """
     block = file.body[file.offset(first) :]
-    if b"\r" in block:
-        block = block.replace(b"\r\n", b"\n")
     ended = file.ends_open or block.endswith(b"\n")
-    block = block.rstrip(b" \n")
-    if not block:
+    rows = block.rstrip(b" \r\n")
+    lone_return = b"\r" in block[len(rows) :].replace(b"\r\n", b"\n")
+    table = parse(rows, columns, dialect) if rows and ended and not lone_return else None
+    if table is not None:
+        return table
+    text = block.replace(b"\r\n", b"\n").rstrip(b" \n").decode()
+    if not text:
         raise RawFileError(
             file.path,
             "no data rows: the file ends with its header",
             line=first,
             mend="export the file again",
         )
-    table = parse(block, columns, dialect) if ended else None
-    if table is None:
-        table = read_cells(file, block.decode(), first + 1, columns, dialect, ended=ended)
-    return table
+    return read_cells(file, text, first + 1, columns, dialect, ended=ended)
 
 
 def parse(block: bytes, columns: int, dialect: Dialect) -> FloatArray | None:
     """Parse rows without their last line end, or return None where they are not certain."""
     if dialect.quoted and b'"' in block:
-        plain = unquote(block)
+        plain = unquote(block.replace(b"\r\n", b"\n"))
         return None if plain is None else parse(plain, columns, Dialect("\t"))
     if len(block) <= _CHUNK:
         return _parse(block, columns, dialect)
@@ -70,7 +74,7 @@ def parse(block: bytes, columns: int, dialect: Dialect) -> FloatArray | None:
             end = block.rfind(b"\n", start, start + _CHUNK)
             if end < 0:
                 return None
-        part = _parse(block[start:end], columns, dialect)
+        part = _parse(block[start:end].removesuffix(b"\r"), columns, dialect)
         if part is None:
             return None
         table[row : row + len(part)] = part
@@ -81,26 +85,27 @@ def parse(block: bytes, columns: int, dialect: Dialect) -> FloatArray | None:
 
 def _parse(block: bytes, columns: int, dialect: Dialect) -> FloatArray | None:
     delimiter, decimal = dialect.delimiter.encode(), dialect.decimal.encode()
-    separators = block.translate(None, _DIGITS + decimal) + b"\n"
-    rows = len(separators) // columns
-    if separators != (delimiter * (columns - 1) + b"\n") * rows:
+    line_end = b"\n"
+    if b"\r" in block:
+        line_end = b"\r\n"
+        if not _returns_only_at_line_ends(block):
+            return None
+    one_row = delimiter * (columns - 1) + line_end
+    separators = block.translate(None, _DIGITS + decimal) + line_end
+    rows = len(separators) // len(one_row)
+    if separators != one_row * rows:
         return None
+    # A carriage return may stay: it is white space to JSON.
     if delimiter == b",":
-        text = b"[" + block.replace(b"\n", b",") + b"]"
+        listed = block.replace(b"\n", b",")
     else:
-        commas = bytes.maketrans(decimal + delimiter + b"\n", b".,,")
-        text = b"[" + block.translate(commas) + b"]"
+        listed = block.translate(bytes.maketrans(decimal + delimiter + b"\n", b".,,"))
+    text = b"".join((b"[", listed, b"]"))
     if b"+" in text and not (b"+-" in text or b"+ " in text):  # JSON knows no leading plus
         text = text.replace(b",+", b",").replace(b"[+", b"[")
-    try:
-        parsed = simdjson.Parser().parse(text)
-    except (ValueError, RuntimeError):
-        return None
-    if not isinstance(parsed, simdjson.Array):
-        return None
-    values: FloatArray = np.frombuffer(parsed.as_buffer(of_type="d"))
-    if values.size != rows * columns:  # one empty field leaves no number and no separator
-        return None
+    values = _json_numbers(text)
+    if values is None or values.size != rows * columns:
+        return None  # one empty field leaves no number and no separator
     if values.max() >= OVER_RANGE or values.min() <= -OVER_RANGE:
         return None
     if not values.all() and _has_integer_minus_zero(text):
@@ -108,9 +113,25 @@ def _parse(block: bytes, columns: int, dialect: Dialect) -> FloatArray | None:
     return values.reshape(rows, columns)
 
 
+def _returns_only_at_line_ends(block: bytes) -> bool:
+    """Say whether carriage return and line feed only stand together, in this order."""
+    characters = np.frombuffer(block, dtype=np.uint8)
+    return bool(((characters[:-1] == _RETURN) == (characters[1:] == _LINE)).all())
+
+
+def _json_numbers(text: bytes) -> FloatArray | None:
+    try:
+        parsed = _PARSER.parse(text)
+    except (ValueError, RuntimeError):
+        return None
+    if not isinstance(parsed, simdjson.Array):
+        return None
+    return np.frombuffer(parsed.as_buffer(of_type="d"))  # a copy: nothing refers to `parsed` now
+
+
 def _has_integer_minus_zero(text: bytes) -> bool:
     """Look for a field `-0`, which JSON reads as an integer, without its sign."""
     characters = np.frombuffer(text, dtype=np.uint8)
     minus = np.flatnonzero(characters == ord("-"))
     behind = characters[minus[characters[minus + 1] == ord("0")] + 2]
-    return bool(((behind == ord(",")) | (behind == ord("]")) | (behind == ord(" "))).any())
+    return bool(np.isin(behind, np.frombuffer(b",] \r", dtype=np.uint8)).any())

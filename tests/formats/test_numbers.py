@@ -64,7 +64,7 @@ def test_fast_slow_and_float_agree_bit_for_bit(
     slow = read_cells(file, text, 1, columns, dialect, ended=True)
     assert bits(read_block(file, 0, columns, dialect)) == bits(truth)
     assert bits(slow) == bits(truth)
-    fast = parse(text.encode(), columns, dialect)
+    fast = parse(text.replace("\n", newline).encode(), columns, dialect)
     assert fast is None or bits(fast) == bits(truth)
 
 
@@ -170,6 +170,38 @@ def test_the_fast_path_leaves_the_uncertain_alone(text: bytes) -> None:
 @pytest.mark.parametrize(
     "text",
     [
+        b"1,2\r\n3\r,4",
+        b"1,2\r\n3,\r4",
+        b"1,\r2\n3,4",
+        b"1,2\r \n3,4",
+        b"1,2\r\n3,4\r",
+        b"\r1,2\r\n3,4",
+        b"1,2\r\r\n3,4",
+    ],
+)
+@pytest.mark.parametrize("end", [b"\n", b"\r\n", b"\r \n"])
+def test_a_carriage_return_belongs_before_a_line_feed(text: bytes, end: bytes) -> None:
+    assert parse(text, 2, COMMA) is None
+    if text.endswith(b"\r") and end == b"\n":
+        return  # together they are a line end
+    with pytest.raises(RawFileError, match=r"not a number|a text row"):
+        read_block(RawFile("x", text + end), 0, 2, COMMA)
+
+
+@pytest.mark.parametrize("newline", [b"\n", b"\r\n"])
+@pytest.mark.parametrize("end", [b"", b" ", b"\n \n", b"\r\n\n", b" \r\n"])
+def test_line_ends_of_both_kinds_and_blank_ends_are_fine(newline: bytes, end: bytes) -> None:
+    text = newline.join([b"1,-0", b"3,4", b"5 , 6"]) + end + newline
+    table = read_block(RawFile("x", text), 0, 2, COMMA)
+    assert bits(table) == bits(np.array([[1.0, -0.0], [3.0, 4.0], [5.0, 6.0]]))
+    assert bits(read_block(RawFile("x", b"1,2\n3,4\r\n5,6\n"), 0, 2, COMMA)) == bits(
+        np.array([[1.0, 2.0], [3.0, 4.0], [5.0, 6.0]])
+    )
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
         b'"1,23","2"',  # a group of two
         b'"1,2345","2"',  # a group of four
         b'"1234,567","2"',  # four digits before a group
@@ -197,6 +229,7 @@ def test_a_large_block_is_read_in_parts() -> None:
     text = "\n".join(f"{a!r},{b!r},{c!r}" for a, b, c in truth.tolist()).encode()
     assert len(text) > 2 << 20
     assert bits(parse(text, 3, COMMA)) == bits(truth)
+    assert bits(parse(text.replace(b"\n", b"\r\n"), 3, COMMA)) == bits(truth)
     spoilt = text[:-1] + b"x"
     assert parse(spoilt, 3, COMMA) is None
     with pytest.raises(RawFileError, match=rf"x, line {rows}, column 3: "):
