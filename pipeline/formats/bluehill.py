@@ -48,4 +48,11 @@ def _read(file: RawFile) -> Recording:
     return read_table(file, layout, _READER, notes(file.head[: layout.names], ","))
 
 
-FORMAT = Format(_READER.name, _READER.version, "Instron Bluehill raw data", _recognises, _read)
+FORMAT = Format(
+    _READER.name,
+    _READER.version,
+    "Instron Bluehill raw data",
+    _recognises,
+    _read,
+    _READER.dialect.delimiter,
+)

@@ -23,7 +23,8 @@ def detect(file: RawFile) -> Format:
     ------
     RawFileError : none does, or several do; says what was found and which formats there are
     """
-    matching = [form for form in FORMATS if form.recognises(file.head)]
+    text = "".join(file.head)
+    matching = [form for form in FORMATS if form.delimiter in text and form.recognises(file.head)]
     if len(matching) == 1:
         return matching[0]
     known = ", ".join(form.name for form in FORMATS)

@@ -20,6 +20,7 @@ class Format:
     title : instrument and form in words
     recognises : does the file's head look like this format? Given `RawFile.head`
     read : the whole file to a Recording, or `RawFileError`
+    delimiter : of its tables: where the head holds none, nobody needs to ask `recognises`
     """
 
     name: str
@@ -27,3 +28,4 @@ class Format:
     title: str
     recognises: Callable[[list[str]], bool]
     read: Callable[[RawFile], Recording]
+    delimiter: str = ""

@@ -60,10 +60,11 @@ def inline_layout(head: Sequence[str], delimiter: str) -> Layout | None:
     The row with most units wins, for a remark in the header may look like one.
     """
     best: Layout | None = None
-    for at, line in enumerate(head):
-        if best and line[:1] in _ROW_STARTS:
-            break
-        if delimiter not in line or not ("(" in line or "[" in line):
+    for at in [at for at, line in enumerate(head) if "(" in line or "[" in line]:
+        line = head[at]
+        if best and any(row[:1] in _ROW_STARTS for row in head[best.rows : at + 1]):
+            break  # rows of numbers have begun
+        if delimiter not in line:
             continue
         cells = split(line, delimiter)
         if not all(cells) or any(looks_numeric(cell) for cell in cells):

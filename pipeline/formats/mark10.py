@@ -61,4 +61,11 @@ def _read(file: RawFile) -> Recording:
     return read_table(file, layout, _READER, metadata, header_units)
 
 
-FORMAT = Format(_READER.name, _READER.version, "Mark-10 or Chatillon log", _recognises, _read)
+FORMAT = Format(
+    _READER.name,
+    _READER.version,
+    "Mark-10 or Chatillon log",
+    _recognises,
+    _read,
+    _READER.dialect.delimiter,
+)

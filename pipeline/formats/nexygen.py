@@ -45,4 +45,11 @@ def _read(file: RawFile) -> Recording:
     return read_table(file, layout, _READER, notes(file.head[: layout.names], "\t"))
 
 
-FORMAT = Format(_READER.name, _READER.version, "Lloyd Nexygen text", _recognises, _read)
+FORMAT = Format(
+    _READER.name,
+    _READER.version,
+    "Lloyd Nexygen text",
+    _recognises,
+    _read,
+    _READER.dialect.delimiter,
+)

@@ -108,7 +108,7 @@ def _parse(block: bytes, columns: int, dialect: Dialect) -> FloatArray | None:
         return None  # one empty field leaves no number and no separator
     if values.max() >= OVER_RANGE or values.min() <= -OVER_RANGE:
         return None
-    if not values.all() and _has_integer_minus_zero(text):
+    if not values.all() and b"-" in text and _has_integer_minus_zero(text, values.size):
         return None
     return values.reshape(rows, columns)
 
@@ -129,9 +129,11 @@ def _json_numbers(text: bytes) -> FloatArray | None:
     return np.frombuffer(parsed.as_buffer(of_type="d"))  # a copy: nothing refers to `parsed` now
 
 
-def _has_integer_minus_zero(text: bytes) -> bool:
+def _has_integer_minus_zero(text: bytes, numbers: int) -> bool:
     """Look for a field `-0`, which JSON reads as an integer, without its sign."""
     characters = np.frombuffer(text, dtype=np.uint8)
+    if np.count_nonzero(characters == ord(".")) == numbers:
+        return False  # every number has its point, so none is an integer
     minus = np.flatnonzero(characters == ord("-"))
     behind = characters[minus[characters[minus + 1] == ord("0")] + 2]
-    return bool(np.isin(behind, np.frombuffer(b",] \r", dtype=np.uint8)).any())
+    return any((behind == end).any() for end in b",] \r")

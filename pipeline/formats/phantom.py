@@ -52,5 +52,10 @@ def _read(file: RawFile) -> Recording:
 
 
 FORMAT = Format(
-    _READER.name, _READER.version, "curves with units beside the labels", _recognises, _read
+    _READER.name,
+    _READER.version,
+    "curves with units beside the labels",
+    _recognises,
+    _read,
+    _READER.dialect.delimiter,
 )

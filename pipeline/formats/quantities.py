@@ -7,6 +7,7 @@ for a force because it looks like one.
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 
 # name in SI -> (SI unit, labels in order of preference); of two columns in one file that mean the
 # same quantity the one listed first gets the name, the other keeps its own
@@ -85,6 +86,7 @@ _MEANING = {
 _REMARK = re.compile(r"\s*\([^()]*\)$")  # Bluehill: `Tensile strain (Extension)`
 
 
+@lru_cache(maxsize=256)  # the files of a campaign have the same labels
 def meaning(label: str) -> tuple[int, str] | None:
     """Give rank and standard name of a label, or None for a label outside the table."""
     return _MEANING.get(_REMARK.sub("", label).casefold())
@@ -118,7 +120,8 @@ def assign(labels: tuple[str, ...], si_units: tuple[str, ...]) -> tuple[str, ...
             continue
         rank, name = found
         best[name] = min(best.get(name, (rank, column)), (rank, column))
-    names = [own_name(label, si_unit) for label, si_unit in zip(labels, si_units, strict=True)]
-    for name, (_, column) in best.items():
-        names[column] = name
-    return tuple(names)
+    standard = {column: name for name, (_, column) in best.items()}
+    return tuple(
+        standard[column] if column in standard else own_name(label, si_unit)
+        for column, (label, si_unit) in enumerate(zip(labels, si_units, strict=True))
+    )

@@ -49,5 +49,10 @@ def _read(file: RawFile) -> Recording:
 
 
 FORMAT = Format(
-    _READER.name, _READER.version, "Soft Robotics Materials Database", _recognises, _read
+    _READER.name,
+    _READER.version,
+    "Soft Robotics Materials Database",
+    _recognises,
+    _read,
+    _READER.dialect.delimiter,
 )

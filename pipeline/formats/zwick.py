@@ -79,4 +79,11 @@ def _trailing_zeros(recording: Recording) -> tuple[Flag, ...]:
     return tuple(flags)
 
 
-FORMAT = Format(_READER.name, _READER.version, "Zwick testXpert text", _recognises, _read)
+FORMAT = Format(
+    _READER.name,
+    _READER.version,
+    "Zwick testXpert text",
+    _recognises,
+    _read,
+    _READER.dialect.delimiter,
+)
