@@ -37,26 +37,21 @@ class Form:
     ----------
     ending : of the file's name
     render : time `[s]`, travel `[mm]` and load `[N]`, shape (n,) each, to the file's text
-    separator, skip, columns : for `pandas.read_csv`
+    separator, decimal, skip : for `pandas.read_csv`
     """
 
     name: str
     ending: str
     render: Callable[[FloatArray, FloatArray, FloatArray], str]
     separator: str
+    decimal: str
     skip: int
-    columns: tuple[str, ...]
 
 
-def _mark10(time_s: FloatArray, travel_mm: FloatArray, load_N: FloatArray) -> str:
-    head = (
-        "3/1/2022  10:46 AM\r\nUnits: N\r\nReadings: Continuous\r\nX-Axis: Travel\r\n"
-        "Travel Unit: mm\r\nReading\tLoad\tTravel\tTime\r\n"
-    )
-    rows = zip(load_N.tolist(), travel_mm.tolist(), time_s.tolist(), strict=True)
-    return head + "".join(
-        f"{i}\t{load:.3f}\t{travel:.3f}\t{time:.3f}\r\n"
-        for i, (load, travel, time) in enumerate(rows, 1)
+def _mts(time_s: FloatArray, travel_mm: FloatArray, load_N: FloatArray) -> str:
+    rows = zip(time_s.tolist(), travel_mm.tolist(), load_N.tolist(), strict=True)
+    return "Time (s)\tCrosshead (mm)\tLoad (N)\r\n" + "".join(
+        f"{time:.5f}\t{travel:.5f}\t{load:.5f}\r\n".replace(".", ",") for time, travel, load in rows
     )
 
 
@@ -67,9 +62,10 @@ def _bluehill(time_s: FloatArray, travel_mm: FloatArray, load_N: FloatArray) -> 
     )
 
 
+COLUMNS = ("time", "travel", "load")
 FORMS = (
-    Form("bluehill", "csv", _bluehill, ",", 2, ("time", "travel", "load")),
-    Form("mark10", "txt", _mark10, "\t", 6, ("reading", "load", "travel", "time")),
+    Form("bluehill", "csv", _bluehill, ",", ".", 2),
+    Form("mts", "txt", _mts, "\t", ",", 1),
 )
 
 

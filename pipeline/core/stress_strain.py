@@ -167,15 +167,23 @@ def _loading_positive(
         raise FitRefused("the file has no samples")
     if not (math.isfinite(np.add.reduce(path)) and math.isfinite(np.add.reduce(load))):
         raise FitRefused("displacement, force, strain or stress holds values that are not finite")
-    travel = path - path[0]
-    far = int(np.abs(travel).argmax())
-    if travel[far] == 0.0:
+    far, reach = _excursion(path)
+    if reach == 0.0:
         raise FitRefused(
             f"displacement (or strain) is the same in all {path.size} samples: nothing was loaded"
         )
-    rise = load[: far + 1] - load[0]
-    top = rise[int(np.abs(rise).argmax())]
-    return path / math.copysign(length, travel[far]), load / math.copysign(area, top)
+    _, rise = _excursion(load[: far + 1])
+    return path / math.copysign(length, reach), load / math.copysign(area, rise)
+
+
+def _excursion(values: FloatArray) -> tuple[int, float]:
+    """Find the first sample that is farthest from sample 0, and its signed distance."""
+    up, down = int(values.argmax()), int(values.argmin())
+    start = values[0]
+    rise, fall = float(values[up] - start), float(values[down] - start)
+    if rise == -fall:
+        return min((up, rise), (down, fall))
+    return (up, rise) if rise > -fall else (down, fall)
 
 
 def disagreement(curve: StressStrain, inside: IndexArray, tolerance: float) -> tuple[Flag, ...]:

@@ -27,6 +27,8 @@ def loading_branch(strain: FloatArray) -> int:
     ----------
     strain : nominal strain, loading positive, shape (n,) `[1]`
     """
+    if (strain[1:] >= strain[:-1]).all():  # the usual test, at a quarter of the cost
+        return int(strain.argmax()) + 1
     fallen = np.maximum.accumulate(strain) - strain > _REVERSAL * strain.max()
     turn = int(fallen.argmax())
     return int((strain[:turn] if fallen[turn] else strain).argmax()) + 1
@@ -73,7 +75,8 @@ def window(
             found,
         )
     x = strain[inside]
-    back = float((np.maximum.accumulate(x) - x).max())
+    highest = np.maximum.accumulate(x)
+    back = float(np.maximum.reduce(highest - x))
     if back > tolerance and back > 6.0 * _noise(x):
         raise FitRefused(
             f"unloading inside the window of {name}: strain goes back by {100 * back:.3g} % among "
@@ -81,7 +84,7 @@ def window(
             "alone or start the test below the window",
             {**found, "goes_back": back},
         )
-    first, last = float(x.min()), float(x.max())
+    first, last = float(np.minimum.reduce(x)), float(highest[-1])
     spare = max(MISSABLE * (high - low), 2.0 * (last - first) / (n - 1))
     if first > low + spare or last < high - spare:
         raise FitRefused(
