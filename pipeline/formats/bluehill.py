@@ -28,23 +28,23 @@ from pipeline.core.records import Recording
 from pipeline.formats.cells import Dialect
 from pipeline.formats.format import Format
 from pipeline.formats.header import Layout, notes, two_row_layout, units_row
-from pipeline.formats.rawfile import RawFile
+from pipeline.formats.rawfile import Head, RawFile
 from pipeline.formats.table import Reader, read_table, required
 
 _READER = Reader("bluehill", 1, Dialect(",", quoted=True))
 
 
-def _layout(head: list[str]) -> Layout | None:
+def _layout(head: Head) -> Layout | None:
     units = units_row(head, ",")
     return None if units is None else two_row_layout(head, ",", units - 1)
 
 
-def _recognises(head: list[str]) -> bool:
-    return _layout(head) is not None
+def _recognises(head: Head) -> bool:
+    return head.once(_layout) is not None
 
 
 def _read(file: RawFile) -> Recording:
-    layout = required(_layout(file.head), file, _READER.name)
+    layout = required(file.head.once(_layout), file, _READER.name)
     return read_table(file, layout, _READER, notes(file.head[: layout.names], ","))
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from pipeline.core.records import Recording
-from pipeline.formats.rawfile import RawFile
+from pipeline.formats.rawfile import Head, RawFile
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +26,6 @@ class Format:
     name: str
     version: int
     title: str
-    recognises: Callable[[list[str]], bool]
+    recognises: Callable[[Head], bool]
     read: Callable[[RawFile], Recording]
     delimiter: str = ""

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from pipeline.core.units import known
 from pipeline.formats.cells import looks_numeric
 from pipeline.formats.quantities import meaning
+from pipeline.formats.rawfile import ROW_STARTS, Head
 
 _LABEL_WITH_UNIT = re.compile(r"(.*\S)\s*(?:\(([^()]*)\)|\[([^\[\]]*)\])")
 _CELL = {mark: re.compile(rf'(?:^|{mark}) *("[^"]*"|[^{mark}]*)') for mark in ",;\t"}
-_ROW_STARTS = frozenset("0123456789+-.")
 _UNIT = re.compile(r"\((.*)\)|\[(.*)\]")
 
 
@@ -54,18 +54,18 @@ def split(line: str, delimiter: str) -> list[str]:
     return [cell.strip(' "') for cell in _CELL[delimiter].findall(line)]
 
 
-def inline_layout(head: Sequence[str], delimiter: str) -> Layout | None:
+def inline_layout(head: Head, delimiter: str) -> Layout | None:
     """Find a row of labels that carry their units: `Load (N)`, `True Strain [-]`.
 
     The row with most units wins, for a remark in the header may look like one.
     """
     best: Layout | None = None
-    for at in [at for at, line in enumerate(head) if "(" in line or "[" in line]:
+    for at in head.texts:
         line = head[at]
-        if best and any(row[:1] in _ROW_STARTS for row in head[best.rows : at + 1]):
-            break  # rows of numbers have begun
-        if delimiter not in line:
+        if delimiter not in line or not ("(" in line or "[" in line):
             continue
+        if best and any(row[:1] in ROW_STARTS for row in head[best.rows : at + 1]):
+            break  # rows of numbers have begun
         cells = split(line, delimiter)
         if not all(cells) or any(looks_numeric(cell) for cell in cells):
             continue
@@ -82,10 +82,11 @@ def inline_layout(head: Sequence[str], delimiter: str) -> Layout | None:
     return best
 
 
-def units_row(head: Sequence[str], delimiter: str, *, bare: bool = False) -> int | None:
+def units_row(head: Head, delimiter: str, *, bare: bool = False) -> int | None:
     """Find the first line that holds units alone: `(s),(mm),(N)`, or `s`, `mm`, `N` if `bare`."""
-    for at, line in enumerate(head):
-        if delimiter not in line or line[0] in _ROW_STARTS:
+    for at in head.texts:
+        line = head[at]
+        if delimiter not in line or line[0] in ROW_STARTS:
             continue
         cells = split(line, delimiter)
         if all(map(_UNIT.fullmatch, cells)) or (bare and all(map(known, cells))):

@@ -26,7 +26,7 @@ from pipeline.core.records import Recording
 from pipeline.formats.cells import Dialect
 from pipeline.formats.format import Format
 from pipeline.formats.header import Layout, notes, split, split_label
-from pipeline.formats.rawfile import RawFile
+from pipeline.formats.rawfile import Head, RawFile
 from pipeline.formats.table import Reader, read_table, required
 
 _READER = Reader("mark10", 1, Dialect("\t"), {"reading": "1", "time": "s"})
@@ -34,21 +34,22 @@ _HEADER_UNITS = {"Load": "Units", "Travel": "Travel Unit"}
 _SPELLINGS = {"lbF": "lbf", "ozF": "ozf", "kgF": "kgf", "gF": "gf"}
 
 
-def _layout(head: list[str]) -> Layout | None:
-    for at, line in enumerate(head):
+def _layout(head: Head) -> Layout | None:
+    for at in head.texts:
+        line = head[at]
         if line.startswith("Reading\t"):
             labels, units = zip(*map(split_label, split(line, "\t")), strict=True)
             return Layout(at, at, labels, units)
     return None
 
 
-def _recognises(head: list[str]) -> bool:
-    layout = _layout(head)
+def _recognises(head: Head) -> bool:
+    layout = head.once(_layout)
     return layout is not None and any(line.startswith("Units:") for line in head[: layout.names])
 
 
 def _read(file: RawFile) -> Recording:
-    layout = required(_layout(file.head), file, _READER.name)
+    layout = required(file.head.once(_layout), file, _READER.name)
     header = file.head[: layout.names]
     metadata = notes(header)
     if header and header[0][:1].isdigit():

@@ -27,21 +27,21 @@ from pipeline.core.records import Recording
 from pipeline.formats.cells import Dialect
 from pipeline.formats.format import Format
 from pipeline.formats.header import Layout, inline_layout, notes, two_row_layout, units_row
-from pipeline.formats.rawfile import RawFile
+from pipeline.formats.rawfile import Head, RawFile
 from pipeline.formats.table import Reader, read_table, required
 
 _READER = Reader("mts", 1, Dialect("\t", decimal=","))
 
 
-def _layout(head: list[str]) -> Layout | None:
+def _layout(head: Head) -> Layout | None:
     units = units_row(head, "\t", bare=True)
     if units is not None:
         return two_row_layout(head, "\t", units - 1)
     return inline_layout(head, "\t")
 
 
-def _recognises(head: list[str]) -> bool:
-    layout = _layout(head)
+def _recognises(head: Head) -> bool:
+    layout = head.once(_layout)
     if layout is None or "machine extension" in map(str.casefold, layout.labels):
         return False
     rows = "".join(head[layout.rows :])
@@ -49,7 +49,7 @@ def _recognises(head: list[str]) -> bool:
 
 
 def _read(file: RawFile) -> Recording:
-    layout = required(_layout(file.head), file, _READER.name)
+    layout = required(file.head.once(_layout), file, _READER.name)
     return read_table(file, layout, _READER, notes(file.head[: layout.names], "\t"))
 
 

@@ -25,23 +25,23 @@ from pipeline.core.records import Recording
 from pipeline.formats.cells import Dialect
 from pipeline.formats.format import Format
 from pipeline.formats.header import Layout, inline_layout, notes
-from pipeline.formats.rawfile import RawFile
+from pipeline.formats.rawfile import Head, RawFile
 from pipeline.formats.table import Reader, read_table, required
 
 _READER = Reader("nexygen", 1, Dialect("\t"))
 
 
-def _layout(head: list[str]) -> Layout | None:
+def _layout(head: Head) -> Layout | None:
     return inline_layout(head, "\t")
 
 
-def _recognises(head: list[str]) -> bool:
-    layout = _layout(head)
+def _recognises(head: Head) -> bool:
+    layout = head.once(_layout)
     return layout is not None and "machine extension" in map(str.casefold, layout.labels)
 
 
 def _read(file: RawFile) -> Recording:
-    layout = required(_layout(file.head), file, _READER.name)
+    layout = required(file.head.once(_layout), file, _READER.name)
     return read_table(file, layout, _READER, notes(file.head[: layout.names], "\t"))
 
 

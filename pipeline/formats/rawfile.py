@@ -4,13 +4,41 @@ from __future__ import annotations
 
 import codecs
 import hashlib
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeVar, cast
 
 from pipeline.core.errors import RawFileError
 
 HEAD_LINES = 64
 _HEAD_BYTES = 16384
+ROW_STARTS = frozenset("0123456789+-.")
+
+Answer = TypeVar("Answer")
+
+
+class Head(list[str]):
+    """The first lines of a file, without their line ends, and what was found out about them."""
+
+    def __init__(self, lines: list[str]) -> None:
+        super().__init__(lines)
+        self._answers: dict[object, object] = {}
+
+    @cached_property
+    def texts(self) -> list[int]:
+        """Lines that may be more than a row of numbers: most are not, and need no further look."""
+        return [
+            at
+            for at, line in enumerate(self)
+            if line[:1] not in ROW_STARTS or "(" in line or "[" in line
+        ]
+
+    def once(self, question: Callable[[Head], Answer]) -> Answer:
+        """Answer a question about these lines; detection and reading ask the same ones."""
+        if question not in self._answers:
+            self._answers[question] = question(self)
+        return cast(Answer, self._answers[question])
 
 
 @dataclass(frozen=True)
@@ -79,10 +107,10 @@ class RawFile:
         return self._decoded[1]
 
     @cached_property
-    def head(self) -> list[str]:
+    def head(self) -> Head:
         """The first 64 lines as text, without their line ends: enough for any header."""
         lines = self.body[:_HEAD_BYTES].decode("utf-8", "replace").split("\n", HEAD_LINES)
-        return [line.rstrip("\r") for line in lines[:HEAD_LINES]]
+        return Head([line.rstrip("\r") for line in lines[:HEAD_LINES]])
 
     def offset(self, line: int) -> int:
         """Give the byte of `body` at which a line starts (counted from 0), at most its length."""

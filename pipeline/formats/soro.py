@@ -28,23 +28,23 @@ from pipeline.core.records import Recording
 from pipeline.formats.cells import Dialect
 from pipeline.formats.format import Format
 from pipeline.formats.header import Layout, inline_layout, notes
-from pipeline.formats.rawfile import RawFile
+from pipeline.formats.rawfile import Head, RawFile
 from pipeline.formats.table import Reader, read_table, required
 
 _READER = Reader("soro", 1, Dialect(";"), {"true strain": "1", "engineering strain": "1"})
 
 
-def _layout(head: list[str]) -> Layout | None:
+def _layout(head: Head) -> Layout | None:
     return inline_layout(head, ";")
 
 
-def _recognises(head: list[str]) -> bool:
-    layout = _layout(head)
+def _recognises(head: Head) -> bool:
+    layout = head.once(_layout)
     return layout is not None and layout.has("force_N", "nominal_stress_Pa", "true_stress_Pa")
 
 
 def _read(file: RawFile) -> Recording:
-    layout = required(_layout(file.head), file, _READER.name)
+    layout = required(file.head.once(_layout), file, _READER.name)
     return read_table(file, layout, _READER, notes(file.head[: layout.names], ";"))
 
 

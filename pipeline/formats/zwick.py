@@ -33,13 +33,13 @@ from pipeline.core.records import Flag, Recording
 from pipeline.formats.cells import Dialect
 from pipeline.formats.format import Format
 from pipeline.formats.header import Layout, notes, two_row_layout
-from pipeline.formats.rawfile import RawFile
+from pipeline.formats.rawfile import Head, RawFile
 from pipeline.formats.table import Reader, read_table, required
 
 _READER = Reader("zwick", 1, Dialect(","))
 
 
-def _layout(head: list[str]) -> Layout | None:
+def _layout(head: Head) -> Layout | None:
     rows = 0
     for at, line in enumerate(head):
         if line.startswith('"'):
@@ -52,13 +52,13 @@ def _layout(head: list[str]) -> Layout | None:
     return layout
 
 
-def _recognises(head: list[str]) -> bool:
-    layout = _layout(head)
+def _recognises(head: Head) -> bool:
+    layout = head.once(_layout)
     return layout is not None and layout.has("force_N", "nominal_stress_Pa")
 
 
 def _read(file: RawFile) -> Recording:
-    layout = required(_layout(file.head), file, _READER.name)
+    layout = required(file.head.once(_layout), file, _READER.name)
     recording = read_table(file, layout, _READER, notes(file.head[: layout.names], ","))
     return replace(recording, flags=recording.flags + _trailing_zeros(recording))
 
