@@ -165,9 +165,9 @@ def _loading_positive(
     """Divide by length and area, signed by where the loading takes the two columns."""
     if path.size == 0:
         raise FitRefused("the file has no samples")
-    if not (math.isfinite(np.add.reduce(path)) and math.isfinite(np.add.reduce(load))):
-        raise FitRefused("displacement, force, strain or stress holds values that are not finite")
     far, reach = _excursion(path)
+    if not (math.isfinite(reach) and math.isfinite(np.add.reduce(load))):
+        raise FitRefused("displacement, force, strain or stress holds values that are not finite")
     if reach == 0.0:
         raise FitRefused(
             f"displacement (or strain) is the same in all {path.size} samples: nothing was loaded"
@@ -179,8 +179,8 @@ def _loading_positive(
 def _excursion(values: FloatArray) -> tuple[int, float]:
     """Find the first sample that is farthest from sample 0, and its signed distance."""
     up, down = int(values.argmax()), int(values.argmin())
-    start = values[0]
-    rise, fall = float(values[up] - start), float(values[down] - start)
+    start = float(values[0])
+    rise, fall = float(values[up]) - start, float(values[down]) - start
     if rise == -fall:
         return min((up, rise), (down, fall))
     return (up, rise) if rise > -fall else (down, fall)

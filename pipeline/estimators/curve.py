@@ -64,11 +64,11 @@ def window(
     ------
     FitRefused : too few samples, unloading among them, or a window that the data do not cover
     """
-    inside = np.flatnonzero((strain >= low - _EDGE) & (strain <= high + _EDGE))
+    inside = ((strain >= low - _EDGE) & (strain <= high + _EDGE)).nonzero()[0]
     n = inside.size
-    name = f"{100 * low:g}-{100 * high:g} % strain"
     found: dict[str, float | int | str] = {"samples": n, "samples_needed": min_samples}
     if n < min_samples:
+        name = _window_name(low, high)
         raise FitRefused(
             f"{n} {'sample' if n == 1 else 'samples'} in the window of {name}, {min_samples} are "
             f"needed; {_denser(strain, low, high, min_samples)}",
@@ -78,6 +78,7 @@ def window(
     highest = np.maximum.accumulate(x)
     back = float(np.maximum.reduce(highest - x))
     if back > tolerance and back > 6.0 * _noise(x):
+        name = _window_name(low, high)
         raise FitRefused(
             f"unloading inside the window of {name}: strain goes back by {100 * back:.3g} % among "
             f"its {n} samples ({min_samples} are needed, all of one loading); export the loading "
@@ -87,6 +88,7 @@ def window(
     first, last = float(np.minimum.reduce(x)), float(highest[-1])
     spare = max(MISSABLE * (high - low), 2.0 * (last - first) / (n - 1))
     if first > low + spare or last < high - spare:
+        name = _window_name(low, high)
         raise FitRefused(
             f"the window of {name} is not covered: its {n} samples ({min_samples} are needed) "
             f"reach from {100 * first:.3g} % to {100 * last:.3g} %; load from below the window to "
@@ -94,6 +96,10 @@ def window(
             {**found, "first_strain": first, "last_strain": last},
         )
     return inside
+
+
+def _window_name(low: float, high: float) -> str:
+    return f"{100 * low:g}-{100 * high:g} % strain"
 
 
 def _noise(x: FloatArray) -> float:

@@ -99,7 +99,7 @@ def fit_line(x: FloatArray, y: FloatArray) -> Line:
     if rss > _ROUNDING * float(dy.dot(dy)):
         lag_one = float(residual[1:].dot(residual[:-1])) / rss
         rho = min(max((n * lag_one + 2.0) / max(n - 5, 1), 0.0), 1.0 - 1.0 / n)
-    q = _sum_over_lags(dx, rho)
+    q = _sum_over_lags(dx, rho) if rho > 0.0 else sxx
     ones = n * (1.0 + rho) / (1.0 - rho) - 2.0 * rho * (1.0 - rho**n) / (1.0 - rho) ** 2
     variance = rss / (n - ones / n - q / sxx)
     independent = n * (1.0 - rho) / (1.0 + rho)

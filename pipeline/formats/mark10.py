@@ -9,7 +9,7 @@ Format
 A time stamp, `Units: N`, `Readings: Continuous`, `X-Axis: Travel`, `Travel Unit: mm`, the row of
 labels (`Reading`, `Load`, `Travel`, `Time`, parted by tabs), then rows of decimal-point numbers;
 CRLF. The unit of the load and of the travel stand in the header; the time is in seconds and the
-reading is a running number, which the exporter does not write: their use is flagged.
+reading is a running number, which the exporter does not write: the metadata say so.
 
 Uncertainties
 -------------

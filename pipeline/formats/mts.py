@@ -37,7 +37,7 @@ def _layout(head: Head) -> Layout | None:
     units = units_row(head, "\t", bare=True)
     if units is not None:
         return two_row_layout(head, "\t", units - 1)
-    return inline_layout(head, "\t")
+    return head.once(inline_layout, "\t")
 
 
 def _recognises(head: Head) -> bool:

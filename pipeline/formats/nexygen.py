@@ -32,7 +32,7 @@ _READER = Reader("nexygen", 1, Dialect("\t"))
 
 
 def _layout(head: Head) -> Layout | None:
-    return inline_layout(head, "\t")
+    return head.once(inline_layout, "\t")
 
 
 def _recognises(head: Head) -> bool:

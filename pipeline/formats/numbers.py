@@ -8,6 +8,8 @@ by line and column. Both give the double nearest to the text, as Python's `float
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import simdjson
 
@@ -99,7 +101,7 @@ def _parse(block: bytes, columns: int, dialect: Dialect) -> FloatArray | None:
     if delimiter == b",":
         listed = block.replace(b"\n", b",")
     else:
-        listed = block.translate(bytes.maketrans(decimal + delimiter + b"\n", b".,,"))
+        listed = block.translate(_to_commas(decimal + delimiter))
     text = b"".join((b"[", listed, b"]"))
     if b"+" in text and not (b"+-" in text or b"+ " in text):  # JSON knows no leading plus
         text = text.replace(b",+", b",").replace(b"[+", b"[")
@@ -111,6 +113,11 @@ def _parse(block: bytes, columns: int, dialect: Dialect) -> FloatArray | None:
     if not values.all() and b"-" in text and _has_integer_minus_zero(text, values.size):
         return None
     return values.reshape(rows, columns)
+
+
+@cache
+def _to_commas(decimal_and_delimiter: bytes) -> bytes:
+    return bytes.maketrans(decimal_and_delimiter + b"\n", b".,,")
 
 
 def _returns_only_at_line_ends(block: bytes) -> bool:

@@ -7,7 +7,7 @@ import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeVar, cast
+from typing import Concatenate, ParamSpec, TypeVar, cast
 
 from pipeline.core.errors import RawFileError
 
@@ -16,6 +16,7 @@ _HEAD_BYTES = 16384
 ROW_STARTS = frozenset("0123456789+-.")
 
 Answer = TypeVar("Answer")
+Details = ParamSpec("Details")
 
 
 class Head(list[str]):
@@ -34,11 +35,17 @@ class Head(list[str]):
             if line[:1] not in ROW_STARTS or "(" in line or "[" in line
         ]
 
-    def once(self, question: Callable[[Head], Answer]) -> Answer:
+    def once(
+        self,
+        question: Callable[Concatenate[Head, Details], Answer],
+        *args: Details.args,
+        **kwargs: Details.kwargs,
+    ) -> Answer:
         """Answer a question about these lines; detection and reading ask the same ones."""
-        if question not in self._answers:
-            self._answers[question] = question(self)
-        return cast(Answer, self._answers[question])
+        key = (question, args, *kwargs.items())
+        if key not in self._answers:
+            self._answers[key] = question(self, *args, **kwargs)
+        return cast(Answer, self._answers[key])
 
 
 @dataclass(frozen=True)

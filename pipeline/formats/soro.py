@@ -11,7 +11,7 @@ Format
 Some 18 header lines `label;value;url;;` whose labels differ between files, a line of semicolons,
 the row of labels (`Time (s);True Strain;True Stress (MPa);Engineering Strain;Engineering Stress
 (MPa)`), then rows of decimal-point numbers; CRLF or LF. The strain columns carry no unit: they
-are pure numbers, true = ln(1 + engineering), and each reading of one without a unit is flagged.
+are pure numbers, true = ln(1 + engineering); the metadata name each one read without a unit.
 
 Uncertainties
 -------------

@@ -27,7 +27,7 @@ class Reader:
     name, version : of the format
     dialect : how it writes rows
     unwritten : label in lower case to unit, for columns that the exporter documents but writes
-        without a unit; each use is flagged
+        without a unit; each use is kept in the metadata
     """
 
     name: str
@@ -69,7 +69,9 @@ def read_table(
     """
     _refuse_rows_above(file, layout, reader.dialect.delimiter)
     _refuse_twins(file, layout, tuple(label.casefold() for label in layout.labels))
-    units, written, flags = _units(file, layout, reader, header_units or {})
+    units, written, documented, flags = _units(file, layout, reader, header_units or {})
+    if documented:
+        metadata = {**metadata, "units not written in the file": ", ".join(documented)}
     conversions = [_conversion(file, layout, column, unit) for column, unit in enumerate(units)]
     si_units = tuple(si_unit for si_unit, _, _ in conversions)
     names = assign(layout.labels, si_units)
@@ -170,8 +172,8 @@ def _steps_back(time: FloatArray, first_line: int) -> list[Flag]:
 
 def _units(
     file: RawFile, layout: Layout, reader: Reader, header_units: Mapping[str, str]
-) -> tuple[list[str], dict[str, str], list[Flag]]:
-    """Give the unit of every column, what the file writes of it, and what is odd about it."""
+) -> tuple[list[str], dict[str, str], list[str], list[Flag]]:
+    """Give every column's unit, what the file writes of it, what it leaves out, what is odd."""
     stated = {label.casefold(): unit for label, unit in header_units.items()}
     flags = list(
         contradictions(stated, dict(zip(layout.labels, layout.units, strict=True)), "header")
@@ -195,15 +197,7 @@ def _units(
                 mend="export the column with its unit, or leave it out",
             )
         units.append(used)
-    if documented:
-        flags.append(
-            Flag(
-                "unit-not-written",
-                f"no unit in the file for {', '.join(documented)}: taken from the documentation "
-                f"of the {reader.name} form",
-            )
-        )
-    return units, written, flags
+    return units, written, documented, flags
 
 
 def _conversion(file: RawFile, layout: Layout, column: int, unit: str) -> tuple[str, float, float]:

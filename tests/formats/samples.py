@@ -134,8 +134,11 @@ SAMPLES = (
         first=9,
         delimiter=";",
         newline="\r\n",
-        flags=("unit-not-written",),
-        metadata={"Material": "Synthetic 10 https://example.org", "Standard": "ASTM D412"},
+        metadata={
+            "units not written in the file": "True Strain [1], Engineering Strain [1]",
+            "Material": "Synthetic 10 https://example.org",
+            "Standard": "ASTM D412",
+        },
         units={"True Strain": "", "True Stress": "MPa"},
     ),
     Sample(
@@ -163,8 +166,12 @@ SAMPLES = (
         first=7,
         delimiter="\t",
         newline="\r\n",
-        flags=("unit-not-written",),
-        metadata={"timestamp": "11/22/2021  10:46 AM", "Units": "N", "Travel Unit": "mm"},
+        metadata={
+            "units not written in the file": "Reading [1], Time [s]",
+            "timestamp": "11/22/2021  10:46 AM",
+            "Units": "N",
+            "Travel Unit": "mm",
+        },
         units={"Reading": "", "Load": "N", "Travel": "mm", "Time": ""},
     ),
     Sample(

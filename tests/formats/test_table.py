@@ -173,12 +173,13 @@ def test_mark10_without_a_travel_unit_is_refused() -> None:
     assert caught.value.reason.startswith("a column without a unit")
 
 
-def test_documented_units_are_flagged() -> None:
+def test_units_from_a_form_s_documentation_are_named_and_no_flag() -> None:
     sample = BY_NAME["mark10"]
-    assert flags(read(sample.raw(sample.lines))) == {
-        "unit-not-written": "no unit in the file for Reading [1], Time [s]: taken from the "
-        "documentation of the mark10 form"
-    }
+    recording = read(sample.raw(sample.lines))
+    assert recording.metadata["units not written in the file"] == "Reading [1], Time [s]"
+    assert recording.flags == ()
+    written = phantom("Time (s),Load (N)", "0,1", "1,2")
+    assert "units not written in the file" not in written.metadata
 
 
 def test_a_soro_strain_in_percent_is_read_as_percent() -> None:
