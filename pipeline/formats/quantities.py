@@ -102,6 +102,7 @@ def own_name(label: str, si_unit: str) -> str:
     )
 
 
+@lru_cache(maxsize=64)
 def assign(labels: tuple[str, ...], si_units: tuple[str, ...]) -> tuple[str, ...]:
     """Name the columns of a table.
 
