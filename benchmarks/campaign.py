@@ -48,17 +48,18 @@ class Form:
     skip: int
 
 
+# Decimals as machines of this kind resolve: 10 ms, 0.1 um, 1 mN.
 def _mts(time_s: FloatArray, travel_mm: FloatArray, load_N: FloatArray) -> str:
     rows = zip(time_s.tolist(), travel_mm.tolist(), load_N.tolist(), strict=True)
     return "Time (s)\tCrosshead (mm)\tLoad (N)\r\n" + "".join(
-        f"{time:.5f}\t{travel:.5f}\t{load:.5f}\r\n".replace(".", ",") for time, travel, load in rows
+        f"{time:.2f}\t{travel:.4f}\t{load:.3f}\r\n".replace(".", ",") for time, travel, load in rows
     )
 
 
 def _bluehill(time_s: FloatArray, travel_mm: FloatArray, load_N: FloatArray) -> str:
     rows = zip(time_s.tolist(), travel_mm.tolist(), load_N.tolist(), strict=True)
     return "Time,Extension,Load\r\n(s),(mm),(N)\r\n" + "".join(
-        f"{time:.5f},{travel:.5f},{load:.5f}\r\n" for time, travel, load in rows
+        f"{time:.2f},{travel:.4f},{load:.3f}\r\n" for time, travel, load in rows
     )
 
 

@@ -42,7 +42,7 @@ from pipeline.formats.lcr_sweep import (
     mode_of,
     read_sweep,
 )
-from pipeline.formats.rawfile import RawFile
+from pipeline.formats.rawfile import Head, RawFile
 
 _NAME, _VERSION = "e4980a", 1
 _FREQUENCY = re.compile(r"freq(?:uency)?\s*(?:[(\[_ ]\s*hz\s*[)\]]?)?", re.IGNORECASE)
@@ -61,10 +61,10 @@ _SPEED = ("speed", "aperture", "integration")
 _SHORT = "shor"
 
 
-def _labels(head: Sequence[str]) -> int | None:
+def _labels(head: Head) -> int | None:
     """Line of the labels, counted from 0."""
-    for at, line in enumerate(head):
-        cells = [cell.strip(' "').casefold() for cell in line.split(",")]
+    for at in head.texts:
+        cells = [cell.strip(' "').casefold() for cell in head[at].split(",")]
         if (
             len(cells) == 4
             and _FREQUENCY.fullmatch(cells[0])
@@ -75,12 +75,12 @@ def _labels(head: Sequence[str]) -> int | None:
     return None
 
 
-def _recognises(head: list[str]) -> bool:
-    return _labels(head) is not None
+def _recognises(head: Head) -> bool:
+    return head.once(_labels) is not None
 
 
 def _read(file: RawFile) -> Recording:
-    at = _labels(file.head)
+    at = file.head.once(_labels)
     if at is None:
         raise RawFileError(
             file.path, "no row of labels as the e4980a form has it", value=file.head[0],
@@ -116,4 +116,4 @@ def _settings(lines: Sequence[str]) -> list[tuple[int, str, str]]:
     return found
 
 
-FORMAT = Format(_NAME, _VERSION, "Keysight E4980A sweep, logged on a PC", _recognises, _read)
+FORMAT = Format(_NAME, _VERSION, "Keysight E4980A sweep, logged on a PC", _recognises, _read, ",")

@@ -40,7 +40,7 @@ from pipeline.formats.lcr_sweep import (
     mode_of,
     read_sweep,
 )
-from pipeline.formats.rawfile import RawFile
+from pipeline.formats.rawfile import Head, RawFile
 
 _NAME, _VERSION = "lcr6000", 1
 _REPLY = re.compile(r"#?\s*(\S.*?)\s*=>\s*(.*?)\s*")
@@ -54,8 +54,9 @@ _NAMES = re.compile(r"frequency\w*,", re.IGNORECASE)
 _IDENTITY = ("model", "firmware", "serial", "vendor")
 
 
-def _recognises(head: list[str]) -> bool:
-    return any(_REPLY.fullmatch(line) for line in head) or bool(_ROW.fullmatch(head[0]))
+def _recognises(head: Head) -> bool:
+    replies = any(_REPLY.fullmatch(head[at]) for at in head.texts)
+    return replies or bool(_ROW.fullmatch(head[0]))
 
 
 def _read(file: RawFile) -> Recording:
