@@ -52,7 +52,7 @@ def card_text(card: MaterialCard) -> str:
         for key in refused:
             for reason in refusal_reasons(card.refusals, key):
                 lines += _wrapped(f"{key}: {reason}")
-    return "\n".join(lines) + "\n"
+    return "\n".join(lines)
 
 
 def title(card: MaterialCard) -> str:

@@ -49,7 +49,7 @@ class Trace:
 
     def text(self) -> str:
         """Write the trace for people: readable units, the SI value beside."""
-        return "\n".join(_lines(self)) + "\n"
+        return "\n".join(_lines(self))
 
     def to_document(self) -> Document:
         """Give the trace as a JSON object, SI units."""

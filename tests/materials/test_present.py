@@ -25,8 +25,7 @@ Flags
   [1] toe: 2 of 2 specimens, such as A1: slope: 59 kPa up to 1 %
 
 Refused
-  tensile_modulus: 2 samples in the window, 10 are needed (A1, A2)
-"""
+  tensile_modulus: 2 samples in the window, 10 are needed (A1, A2)"""
     )
 
 
@@ -67,7 +66,7 @@ def test_flags_are_numbered_by_name() -> None:
         modulus(key="tensile_strength", flags=(Flag("toe", "second"),)),
     )
     text = card_text(card(records=records, laws=(), refusals=()))
-    assert text.endswith("\nFlags\n  [1] odd: one\n  [2] toe: first\n")
+    assert text.endswith("\nFlags\n  [1] odd: one\n  [2] toe: first")
     assert [line[-7:].strip() for line in text.splitlines()[4:6]] == ["[1] [2]", "[2]"]
 
 

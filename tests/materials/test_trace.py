@@ -26,8 +26,7 @@ _MADE_BY = f"""
 Made by
   code    deamat 1.2.3, digest c0dec0dec0dec0dec0dec0de
   config  materials.toml, sha256 {"a" * 64}
-  config  methods.toml, sha256 {"b" * 64}
-"""
+  config  methods.toml, sha256 {"b" * 64}"""
 
 
 def database(path: Path, found: MaterialCard) -> Database:
