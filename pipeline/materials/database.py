@@ -20,7 +20,7 @@ from pipeline.core.errors import PipelineError
 from pipeline.core.ledger import FileEntry, Provenance
 from pipeline.materials.card import Credit, MaterialCard
 from pipeline.materials.document import CardError
-from pipeline.materials.rows import Owned, by_owner, law_of, record_of, refusal_of
+from pipeline.materials.rows import laws_of, owned_of, records_of, refusals_of
 from pipeline.materials.tables import (
     APPLICATION_ID,
     TABLES,
@@ -77,6 +77,7 @@ def write_database(
         raise CardError(f"two cards of {next(n for n in names if names.count(n) > 1)}")
     path.unlink(missing_ok=True)
     connection = sqlite3.connect(path, isolation_level=None)
+    whole = False
     try:
         connection.executescript(
             "PRAGMA page_size = 4096; PRAGMA encoding = 'UTF-8'; PRAGMA auto_vacuum = NONE;"
@@ -93,8 +94,11 @@ def write_database(
             for table, row in card_rows(card.to_document(), ids):
                 connection.execute(inserts[table], row)
         connection.execute("COMMIT")
+        whole = True
     finally:
         connection.close()
+        if not whole:
+            path.unlink()
 
 
 def _inserts(connection: sqlite3.Connection) -> dict[str, str]:
@@ -162,7 +166,9 @@ class Database(Mapping[str, MaterialCard]):
         if not found:
             raise MissingMaterial(self._missing(material))
         name, synthetic = found[0]
-        owned = Owned(*(by_owner(self._rows(_OWNED.format(t), material)) for t in Owned._fields))
+        budgets, origins, flags = (
+            self._rows(_OWNED.format(table), material) for table in ("budgets", "origins", "flags")
+        )
         records, laws, refusals, campaigns = (
             self._rows(f"SELECT * FROM {table} WHERE material = ? ORDER BY {order}", material)
             for table, order in (
@@ -170,11 +176,12 @@ class Database(Mapping[str, MaterialCard]):
                 ("campaigns", "campaign"),
             )
         )
+        owned = owned_of(budgets, origins, flags)
         return MaterialCard(
             *(material, name, bool(synthetic)),
-            records=tuple(record_of(row, owned) for row in records),
-            laws=tuple(law_of(row, owned) for row in laws),
-            refusals=tuple(map(refusal_of, refusals)),
+            records=records_of(records, owned),
+            laws=laws_of(laws, owned),
+            refusals=refusals_of(refusals),
             campaigns=tuple(Credit(*(*row[1:-1], bool(row[-1]))) for row in campaigns),
         )
 

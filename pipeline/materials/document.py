@@ -30,7 +30,7 @@ SCHEMA = "urn:deamat:card:1"
 Document = dict[str, Any]
 T = TypeVar("T")
 
-_NOT_FINITE: dict[Detail, float] = {"nan": math.nan, "inf": math.inf, "-inf": -math.inf}
+NOT_FINITE: dict[Detail, float] = {"nan": math.nan, "inf": math.inf, "-inf": -math.inf}
 _ORIGIN_FIELDS = tuple(f.name for f in fields(Origin) if f.name != "diagnostics")
 _PROPERTY_FIELDS = (
     *("key", "symbol", "value", "unit", "standard_uncertainty", "u_independent", "u_shared"),
@@ -102,7 +102,7 @@ def _detail(value: Detail) -> Detail:
 
 def details_from(document: Mapping[str, Any]) -> dict[str, Detail]:
     """Read diagnostics back."""
-    return {k: _NOT_FINITE.get(v, v) for k, v in document.items()}
+    return {k: NOT_FINITE.get(v, v) for k, v in document.items()}
 
 
 def _flags_from(texts: Iterable[str]) -> tuple[Flag, ...]:

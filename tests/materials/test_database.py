@@ -235,6 +235,13 @@ def test_two_cards_of_one_material_are_an_error(tmp_path: Path) -> None:
         write_database(tmp_path / "x.sqlite", [card(), gel_b(), gel_b()], (), PROVENANCE)
 
 
+def test_a_database_that_cannot_be_finished_leaves_nothing(tmp_path: Path) -> None:
+    odd = replace(gel_b(), records=(modulus(material="gel-b", conditions={"weather": "fair"}),))
+    with pytest.raises(CardError, match="unknown condition weather"):
+        write_database(tmp_path / "x.sqlite", [card(), odd], (), PROVENANCE)
+    assert list(tmp_path.iterdir()) == []
+
+
 def _large_card(material: str) -> MaterialCard:
     """Thirty records: every key, at two or three ages."""
     keys = (list(PROPERTIES) * 3)[:30]
