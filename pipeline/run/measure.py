@@ -141,7 +141,7 @@ def _tasks(technique: Technique, bench: Bench) -> Iterator[tuple[str, dict[str, 
                 continue
             entry = survey.entries[specimen.file] if specimen.file else None
             name, machine = bench.config.instruments.machine(specimen.notes.get("instrument", ""))
-            needs = {key: _needed(key, specimen, bench.records) for key in technique.needs}
+            needs = {key: needed(key, specimen, bench.records) for key in technique.needs}
             found = {key: q for key, q in needs.items() if q is not None}
             info = survey.campaign.info
             task = Task(
@@ -178,7 +178,7 @@ def _reader(name: str) -> str:
     return f"{name}@{_READERS[name]}" if name in _READERS else "none"
 
 
-def _needed(
+def needed(
     key: str, specimen: Specimen, records: Mapping[tuple[str, str], list[PropertyRecord]]
 ) -> Quantity | None:
     """Find what a technique needs of its material: same campaign, same age, else the usual age."""
