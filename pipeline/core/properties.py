@@ -41,7 +41,11 @@ _TABLE = (
     PropertyKey("relative_permittivity", "eps_r", "1", (1.5, 100.0), "ASTM D150"),
     PropertyKey("loss_tangent", "tan delta", "1", (0.0, 1.0), "ASTM D150"),
     PropertyKey("breakdown_strength", "E_b", "V/m", (1e6, 1e9), "D149-style DC ramp, IEC 62539"),
+    PropertyKey("breakdown_field", "E", "V/m", (1e6, 1e9), "D149-style DC ramp, one specimen"),
+    PropertyKey("breakdown_B10", "E_10", "V/m", (1e5, 1e9), "field that 10 % do not survive"),
+    PropertyKey("breakdown_B1", "E_1", "V/m", (1e5, 1e9), "field that 1 % do not survive"),
     PropertyKey("weibull_shape", "beta", "1", (0.5, 100.0), "IEC 62539"),
+    PropertyKey("weibull_shape_unbiased", "beta_u", "1", (0.5, 100.0), "Ross 1996"),
     PropertyKey("viscosity", "mu", "Pa.s", (1e-3, 1e5), "ASTM D2196"),
     PropertyKey("viscosity_doubling_time", "t_2", "s", (60.0, 1e7), "from the viscosity law"),
     PropertyKey("handling_time", "t_h", "s", (60.0, 1e7), "last clean printed line"),
@@ -60,6 +64,7 @@ CONDITIONS: dict[str, str] = {
     "rate_per_s": "nominal strain rate or shear rate of the test",
     "window": "range of strain or time that was fitted: [low, high]",
     "electrode_area_m2": "area under the electrode",
+    "rate_V_per_s": "rate of rise of the test voltage, as it was set",
 }
 
 # A register that records the usual state, tested some days after cure, says so with this word.

@@ -4,6 +4,7 @@ from pipeline.core.technique import Technique
 from pipeline.techniques import compression, permittivity, tension
 
 TECHNIQUES: dict[str, Technique] = {
+    "breakdown": breakdown.TECHNIQUE,
     "compression": compression.TECHNIQUE,
     "permittivity": permittivity.TECHNIQUE,
     "tension": tension.TECHNIQUE,

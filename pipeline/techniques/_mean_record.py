@@ -100,8 +100,8 @@ def _record(
         conditions=conditions,
         method=first.method if n == 1 else f"mean of {n} specimens; {first.method}",
         budget=budget,
-        origins=tuple(_origin(m, v, technique) for m, v in pairs),
-        flags=_merged_flags(pairs) + _flags_of_mean(pairs, mean.value),
+        origins=tuple(origin_of(m, v, technique) for m, v in pairs),
+        flags=merged_flags(pairs) + _flags_of_mean(pairs, mean.value),
         diagnostics=_diagnostics(pairs, mean.degrees_of_freedom),
     )
 
@@ -116,7 +116,8 @@ def _shared_lines(pairs: Sequence[Pair]) -> tuple[Contribution, ...]:
     return tuple(Contribution(source, u / len(pairs), True) for source, u in totals.items())
 
 
-def _origin(measurement: Measurement, value: MeasuredValue, technique: str) -> Origin:
+def origin_of(measurement: Measurement, value: MeasuredValue, technique: str) -> Origin:
+    """Trace a record to one specimen's value, its register row and its bytes."""
     specimen, source = measurement.specimen, measurement.source
     first, last = (None, None) if value.lines is None else value.lines
     return Origin(
@@ -136,7 +137,7 @@ def _origin(measurement: Measurement, value: MeasuredValue, technique: str) -> O
     )
 
 
-def _merged_flags(pairs: Sequence[Pair]) -> tuple[Flag, ...]:
+def merged_flags(pairs: Sequence[Pair]) -> tuple[Flag, ...]:
     """Say each flag of the specimens once, with who has it and the first one's numbers."""
     found: dict[str, list[tuple[str, str]]] = {}
     for measurement, value in pairs:
