@@ -11,6 +11,7 @@ from functools import reduce
 from pathlib import Path
 
 from pipeline.core.errors import ConfigError
+from pipeline.twin.breakdown import breakdown_part
 from pipeline.twin.compression import compression_part
 from pipeline.twin.part import SYNTHETIC, Part
 from pipeline.twin.permittivity import permittivity_part

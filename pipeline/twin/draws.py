@@ -20,7 +20,9 @@ from pipeline.core.records import FloatArray
 
 # The errors are drawn from the standard uncertainties that `config/instruments.toml` declares: only
 # then can the stated intervals cover the truth as often as they say.
-MACHINE = Machine(u_force_calibration=0.005, u_displacement_calibration=0.002)
+MACHINE = Machine(
+    u_force_calibration=0.005, u_displacement_calibration=0.002, u_voltage_calibration=0.005
+)
 CALIPER = Gauge(u_reading_m=1e-5, u_calibration_m=1e-5)
 MICROMETER = Gauge(u_reading_m=1e-6, u_calibration_m=1e-6)
 CALIPER_STEP_M = 1e-5
@@ -34,6 +36,7 @@ class Calibration:
     Parameters
     ----------
     force, displacement : relative errors of load cell and crosshead `[1]`
+    voltage : relative error of the high-voltage monitor, common to all techniques `[1]`
     caliper_m, micrometer_m : errors of the gauges, common to all techniques `[m]`
     """
 
@@ -41,6 +44,7 @@ class Calibration:
     displacement: float
     caliper_m: float
     micrometer_m: float
+    voltage: float
 
 
 def stream(seed: int, *key: str) -> Generator:
@@ -59,11 +63,13 @@ def draw_calibration(seed: int, technique: str) -> Calibration:
     """Draw the calibration errors of a technique's machine and of the campaign's gauges."""
     machine = stream(seed, "calibration", technique)
     gauges = stream(seed, "calibration", "gauges")
+    monitor = stream(seed, "calibration", "high voltage")
     return Calibration(
         force=machine.normal(0.0, MACHINE.u_force_calibration),
         displacement=machine.normal(0.0, MACHINE.u_displacement_calibration),
         caliper_m=gauges.normal(0.0, CALIPER.u_calibration_m),
         micrometer_m=gauges.normal(0.0, MICROMETER.u_calibration_m),
+        voltage=monitor.normal(0.0, MACHINE.u_voltage_calibration),
     )
 
 

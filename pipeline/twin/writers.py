@@ -32,6 +32,42 @@ def chatillon_log(
     return _lines(head + body, "\r\n")
 
 
+def daq_ramp_log(
+    remark: str,
+    voltage_V_per_V: float,
+    current_A_per_V: float,
+    time_s: FloatArray,
+    voltage_monitor_V: FloatArray,
+    current_monitor_V: FloatArray,
+) -> bytes:
+    """Write the DAQ log of a high-voltage amplifier's two monitors, in volts.
+
+    Parameters
+    ----------
+    remark : first line of the header
+    voltage_V_per_V, current_A_per_V : what one volt of either monitor stands for
+    time_s, voltage_monitor_V, current_monitor_V : shape (n,) each
+    """
+    head = [
+        f"# {remark}",
+        f"# channel 1: voltage monitor, {voltage_V_per_V:g} V/V",
+        f"# channel 2: current monitor, {current_A_per_V:g} A/V",
+        "time_s,ch1_V,ch2_V",
+    ]
+    columns = (time_s.tolist(), voltage_monitor_V.tolist(), current_monitor_V.tolist())
+    rows = zip(*columns, strict=True)
+    return _lines(head + [f"{t:.3f},{v:.4f},{i:.4f}" for t, v, i in rows], "\n")
+
+
+def ramp_csv(
+    remark: str, time_s: FloatArray, voltage_V: FloatArray, current_A: FloatArray
+) -> bytes:
+    """Write a high-voltage ramp as a plain table in s, kV and uA under a remark."""
+    rows = zip(time_s.tolist(), voltage_V.tolist(), current_A.tolist(), strict=True)
+    body = [f"{t:.1f},{v / 1e3:.4f},{i * 1e6:.2f}" for t, v, i in rows]
+    return _lines([f"# {remark}", "time_s,voltage_kV,current_uA", *body], "\n")
+
+
 def bluehill_csv(
     header: Iterable[tuple[str, str, str]],
     time_s: FloatArray,

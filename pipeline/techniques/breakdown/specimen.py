@@ -27,7 +27,7 @@ from pipeline.techniques.breakdown.ramp import Breakdown, Rise, audit_rise, find
 
 _CONDITIONS = ("electrode_area_m2", "rate_V_per_s")
 _STYLE = (
-    "over the undeformed thickness as the register gives it; DC, in the style of ASTM D149 (written "
+    "over the undeformed thickness as the register gives it; DC, in the style of ASTM D149 (made "
     "for AC; for DC: ASTM D3755, IEC 60243-2)"
 )
 _NO_RESULT = (
@@ -93,12 +93,15 @@ def _seen(specimen: Specimen, recording: Recording | None, config: BreakdownConf
     if "breakdown_voltage_V" in numbers:
         voltage = numbers["breakdown_voltage_V"]
         _refuse_beyond_limit(voltage.value, config)
+        alone = Flag(
+            "no-ramp", "the register gives the voltage alone: how it rose cannot be audited"
+        )
         return _Seen(
             voltage.value,
             censored,
             f"voltage {what} as the register gives it",
             budget=_own(voltage),
-            flags=flags,
+            flags=(*flags, alone),
         )
     if "breakdown_field_V_per_m" in numbers:
         given = numbers["breakdown_field_V_per_m"]
