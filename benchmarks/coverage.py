@@ -45,7 +45,7 @@ class Answer:
 
     @property
     def holds(self) -> bool:
-        """Does the interval hold the truth, as far as the arithmetic can tell?"""
+        """Say whether the interval holds the truth, as far as the arithmetic can tell."""
         slack = 1e-12 * abs(self.truth)
         return self.low - slack <= self.truth <= self.high + slack
 
@@ -69,7 +69,7 @@ def _compare(
     """Pair each true value with the one record that states it."""
     for value in truth:
         place = (NAME, str(value["material"]))
-        age = value["age"] if "age" in value else REFERENCE_AGE
+        age = value.get("age", REFERENCE_AGE)
         found = [
             r
             for r in records.get(place, [])

@@ -101,6 +101,7 @@ class Machine(Declared):
     force_resolution_N: float = Field(default=0.0, ge=0)
     u_force_calibration: float = Field(default=0.005, ge=0, description="relative, shared")
     u_displacement_calibration: float = Field(default=0.002, ge=0, description="relative, shared")
+    u_voltage_calibration: float = Field(default=0.005, ge=0, description="relative, shared")
     impedance: LcrAccuracy = Field(default_factory=LcrAccuracy, description="of an LCR meter")
     source: str = "defaults: an ISO 7500-1 class 1 machine"
 

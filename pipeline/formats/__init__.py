@@ -18,6 +18,7 @@ FORMATS: tuple[Format, ...] = tuple(
     for module in (
         "bluehill",
         "e4980a",
+        "hv_ramp",
         "lcr6000",
         "lcr_csv",
         "mark10",

@@ -23,7 +23,12 @@ NAME = "sylgard-2022-twin"
 SEED = 2025  # the first from 2022 on whose every 95 % interval holds its truth: docs/adr/0007
 
 # One file of this package per technique, each with its own random streams.
-PARTS: tuple[Callable[[int], Part], ...] = (compression_part, tension_part, permittivity_part)
+PARTS: tuple[Callable[[int], Part], ...] = (
+    compression_part,
+    tension_part,
+    permittivity_part,
+    breakdown_part,
+)
 
 _CAMPAIGN = """\
 title = "Simulated characterisation of the Sylgard compositions of Sikulskyi et al. 2022"
