@@ -103,6 +103,14 @@ class Machine(Declared):
     u_displacement_calibration: float = Field(default=0.002, ge=0, description="relative, shared")
     u_voltage_calibration: float = Field(default=0.005, ge=0, description="relative, shared")
     impedance: LcrAccuracy = Field(default_factory=LcrAccuracy, description="of an LCR meter")
+    u_torque_calibration: float = Field(
+        default=0.01,
+        ge=0,
+        description="viscometer, part of full scale, shared: a limit of 2 % as two sigma",
+    )
+    torque_noise: float = Field(
+        default=0.003, gt=0, description="viscometer, part of full scale, of a single reading"
+    )
     source: str = "defaults: an ISO 7500-1 class 1 machine"
 
 

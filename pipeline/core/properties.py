@@ -48,6 +48,14 @@ _TABLE = (
     PropertyKey("weibull_shape_unbiased", "beta_u", "1", (0.5, 100.0), "Ross 1996"),
     PropertyKey("viscosity", "mu", "Pa.s", (1e-3, 1e5), "ASTM D2196"),
     PropertyKey("viscosity_doubling_time", "t_2", "s", (60.0, 1e7), "from the viscosity law"),
+    PropertyKey("time_to_viscosity_limit", "t_lim", "s", (60.0, 1e7), "from the viscosity law"),
+    PropertyKey(
+        "flow_consistency", "K", "Pa.s^n", (1e-3, 1e6), "power law, K rate^(n-1), nominal rate"
+    ),
+    PropertyKey(
+        "flow_consistency_wide_cup", "K_w", "Pa.s^n", (1e-3, 1e6), "K n^n: rate 2 omega / n"
+    ),
+    PropertyKey("flow_index", "n", "1", (0.05, 2.0), "power law, K rate^(n-1)"),
     PropertyKey("handling_time", "t_h", "s", (60.0, 1e7), "last clean printed line"),
     PropertyKey("mass_density", "rho", "kg/m3", (500.0, 3000.0), "ASTM D792"),
 )
@@ -62,6 +70,7 @@ CONDITIONS: dict[str, str] = {
     "humidity": "relative humidity of the room, 0 to 1",
     "frequency_Hz": "frequency of the test",
     "rate_per_s": "nominal strain rate or shear rate of the test",
+    "time_s": "time since mixing",
     "window": "range of strain or time that was fitted: [low, high]",
     "electrode_area_m2": "area under the electrode",
     "rate_V_per_s": "rate of rise of the test voltage, as it was set",

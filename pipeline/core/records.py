@@ -7,8 +7,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import stdtrit
 
 from pipeline.core.errors import OutOfRange
+from pipeline.core.laws import FORMS
 from pipeline.core.quantity import Contribution, Quantity
 
 FloatArray = NDArray[np.float64]
@@ -196,19 +198,23 @@ class PropertyRecord:
 
 @dataclass(frozen=True, slots=True)
 class Law:
-    r"""A fitted polynomial $y(x) = \sum_k c_k x^k$ that answers with its uncertainty.
+    r"""A fitted function of time (and shear rate) that answers with its uncertainty.
 
     Parameters
     ----------
-    key : property key of y; `kind` names the form
+    key : property key of y
+    kind : name of its form in `core.laws.FORMS`
     argument, argument_unit : what x is
-    coefficients : shape (p,), lowest order first `[unit / argument_unit^k]`
-    covariance : shape (p, p)
+    coefficients : as the form takes them; a polynomial's lowest order first
+    covariance : of the coefficients, shape (p, p)
     valid : range of x in which the law holds `[argument_unit]`
+    parts : lengths of the polynomials in a form that has several, else empty
+    rates : range of shear rates in which the law holds `[1/s]`; None for a form without a rate
+    degrees_of_freedom : of the covariance; None where it counts as known
 
     Raises
     ------
-    OutOfRange : asked for an x outside `valid`
+    OutOfRange : asked for an x outside `valid`, or a rate outside `rates`
     """
 
     key: str
@@ -226,18 +232,42 @@ class Law:
     origins: tuple[Origin, ...] = ()
     flags: tuple[Flag, ...] = ()
     diagnostics: Mapping[str, Detail] = field(default_factory=dict)
+    parts: tuple[int, ...] = ()
+    rates: tuple[float, float] | None = None
+    degrees_of_freedom: float | None = None
 
-    def __call__(self, x: float) -> Quantity:
-        """Evaluate the law at x `[argument_unit]`."""
+    def __call__(self, x: float, rate_per_s: float | None = None) -> Quantity:
+        """Evaluate the law at x `[argument_unit]` and, where it has one, a shear rate `[1/s]`."""
+        self._inside(x, rate_per_s)
+        coefficients = np.asarray(self.coefficients, dtype=np.float64)
+        value, slopes = FORMS[self.kind](coefficients, x, rate_per_s, self.parts)
+        variance = float(slopes @ np.asarray(self.covariance) @ slopes)
+        return Quantity(value, self.unit, max(variance, 0.0) ** 0.5)
+
+    def ci95(self, x: float, rate_per_s: float | None = None) -> tuple[float, float]:
+        """Give the 95 % confidence interval of the law at x `[unit]`: Student's t."""
+        found = self(x, rate_per_s)
+        dof = 1e6 if self.degrees_of_freedom is None else min(self.degrees_of_freedom, 1e6)
+        half = float(stdtrit(dof, 0.975)) * found.standard_uncertainty
+        return found.value - half, found.value + half
+
+    def _inside(self, x: float, rate_per_s: float | None) -> None:
         low, high = self.valid
         if not low <= x <= high:
             raise OutOfRange(
                 f"{self.key} of {self.material} is known for {self.argument} from {low:g} to "
                 f"{high:g} {self.argument_unit}, not at {x:g}"
             )
-        powers = np.power(x, np.arange(len(self.coefficients), dtype=np.float64))
-        variance = float(powers @ np.asarray(self.covariance) @ powers)
-        return Quantity(float(powers @ np.asarray(self.coefficients)), self.unit, variance**0.5)
+        if self.rates is None:
+            if rate_per_s is not None:
+                raise OutOfRange(f"{self.key} of {self.material} is a law without a shear rate")
+            return
+        slow, fast = self.rates
+        if rate_per_s is None or not slow <= rate_per_s <= fast:
+            raise OutOfRange(
+                f"{self.key} of {self.material} is known for shear rates from {slow:g} to "
+                f"{fast:g} 1/s, not at {'no rate' if rate_per_s is None else f'{rate_per_s:g}'}"
+            )
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,11 +22,13 @@ class Context:
     config : an instance of the technique's own config class
     machine : the limits of the instrument that the register names
     needs : the properties of other techniques that it declared, for the same material
+    timezone : of stamps without an offset, as the campaign declares it
     """
 
     config: Any
     machine: Machine
     needs: Mapping[str, Quantity]
+    timezone: str = "UTC"
 
 
 @dataclass(frozen=True, slots=True)

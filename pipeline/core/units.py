@@ -62,6 +62,15 @@ UNITS: dict[str, tuple[str, float, float]] = {
     "mm_per_s": ("m/s", 1e-3, 0.0),
     "1/s": ("1/s", 1.0, 0.0),
     "per_s": ("1/s", 1.0, 0.0),
+    "N.m": ("N.m", 1.0, 0.0),
+    "mN.m": ("N.m", 1e-3, 0.0),
+    "uN.m": ("N.m", 1e-6, 0.0),
+    "mNm": ("N.m", 1e-3, 0.0),
+    "uNm": ("N.m", 1e-6, 0.0),
+    "mrad": ("rad", 1e-3, 0.0),
+    "s^-1": ("1/s", 1.0, 0.0),
+    "1/min": ("rpm", 1.0, 0.0),
+    "Pa s": ("Pa.s", 1.0, 0.0),
     "rpm": ("rpm", 1.0, 0.0),  # a setting of the viscometer, kept as it is spoken
     "Hz": ("Hz", 1.0, 0.0),
     "kHz": ("Hz", 1e3, 0.0),
@@ -97,7 +106,7 @@ UNITS: dict[str, tuple[str, float, float]] = {
 }
 
 _SPELLINGS = str.maketrans(
-    {"\u00b5": "u", "\u03bc": "u", "\u00b2": "2", "\u00b3": "3", "\u00b0": ""}
+    {"\u00b5": "u", "\u03bc": "u", "\u00b2": "2", "\u00b3": "3", "\u00b0": "", "\u00b7": "."}
 )
 
 

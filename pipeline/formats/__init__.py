@@ -16,16 +16,23 @@ from pipeline.formats.format import Format
 FORMATS: tuple[Format, ...] = tuple(
     import_module(f"{__name__}.{module}").FORMAT
     for module in (
+        "antonpaar",
         "bluehill",
         "e4980a",
         "hv_ramp",
         "lcr6000",
         "lcr_csv",
+        "flow_tab",
         "mark10",
         "mts",
+        "ndj8s",
         "nexygen",
         "phantom",
+        "rheocompass",
+        "rheodata",
+        "schmid",
         "soro",
+        "viscometer_csv",
         "zwick",
     )
 )

@@ -74,6 +74,10 @@ STANDARD: dict[str, tuple[str, tuple[str, ...]]] = {
             "spannung",
         ),
     ),
+    "shear_rate_per_s": ("1/s", ("shear rate", "scherrate")),
+    "shear_stress_Pa": ("Pa", ("shear stress", "schubspannung")),
+    "viscosity_Pas": ("Pa.s", ("viscosity", "viskosit\u00e4t")),
+    "speed_rpm": ("rpm", ("drehzahl",)),
     "true_strain": ("1", ("true strain",)),
     "true_stress_Pa": ("Pa", ("true stress",)),
 }

@@ -145,7 +145,7 @@ def _tasks(technique: Technique, bench: Bench) -> Iterator[tuple[str, dict[str, 
             found = {key: q for key, q in needs.items() if q is not None}
             info = survey.campaign.info
             task = Task(
-                bench.folders.raw, specimen, Context(config, machine, found),
+                bench.folders.raw, specimen, Context(config, machine, found, info.timezone),
                 entry.sha256 if entry else None,
                 changed=entry is not None and entry.manifest == "changed",
                 registered=entry is None or entry.manifest != "extra",

@@ -1,0 +1,49 @@
+"""Flow curves as Anton Paar's older rheometer software exports them: semicolons, decimal commas.
+
+Usage
+-----
+Named `antonpaar`; detected by a semicolon-separated row of labels with `Shear Rate`, and a row of
+bracketed units below it.
+
+Format
+------
+`Shear Rate;Shear Stress;Viscosity;Speed;Torque`, then `[1/s];[Pa];[Pa.s];[1/min];[uNm]` (with a
+middle dot and a micro sign, in UTF-8 or Latin-1), then rows with decimal commas; CRLF or LF.
+
+Uncertainties
+-------------
+None in the file.
+
+Metadata
+--------
+None.
+"""
+
+from __future__ import annotations
+
+from pipeline.core.records import Recording
+from pipeline.formats.cells import Dialect
+from pipeline.formats.format import Format
+from pipeline.formats.header import Layout, two_row_layout, units_row
+from pipeline.formats.rawfile import RawFile
+from pipeline.formats.table import Reader, read_table, required
+
+_READER = Reader("antonpaar", 1, Dialect(";", ","))
+
+
+def _layout(head: list[str]) -> Layout | None:
+    units = units_row([line or " " for line in head], ";")
+    return None if units is None else two_row_layout(head, ";", units - 1)
+
+
+def _recognises(head: list[str]) -> bool:
+    layout = _layout(head)
+    return layout is not None and layout.has("shear_rate_per_s")
+
+
+def _read(file: RawFile) -> Recording:
+    layout = required(_layout(file.head), file, _READER.name)
+    return read_table(file, layout, _READER, {})
+
+
+FORMAT = Format(_READER.name, _READER.version, "Anton Paar flow curve", _recognises, _read)

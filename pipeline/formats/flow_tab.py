@@ -1,0 +1,72 @@
+"""Flow curves in tab-separated text, labels with their units in square brackets.
+
+Usage
+-----
+Named `flow_tab`; detected by a tab-separated first line with `Shear Rate` and `Viscosity`.
+
+Format
+------
+`Point No.<TAB>Shear Rate [1/s]<TAB>Shear Stress [Pa]<TAB>Viscosity [mPa.s]...`, then rows with
+decimal points; CRLF or LF. A file that leaves the units out is read in 1/s and Pa.s, and flagged.
+Units with a middle dot or a degree sign may be in Mac OS Roman, as some exports were.
+
+Uncertainties
+-------------
+None in the file.
+
+Metadata
+--------
+None.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from pipeline.core.records import Flag, Recording
+from pipeline.formats.cells import Dialect, looks_numeric
+from pipeline.formats.format import Format
+from pipeline.formats.header import Layout, split, split_label
+from pipeline.formats.quantities import meaning
+from pipeline.formats.rawfile import RawFile
+from pipeline.formats.table import Reader, read_table, required
+
+_READER = Reader(
+    "flow_tab",
+    1,
+    Dialect("\t"),
+    {"point no.": "1", "shear rate": "1/s", "viscosity": "Pa.s"},
+)
+# Middle dot and degree sign of Mac OS Roman, as they look when read as Latin-1.
+_MAC_ROMAN = str.maketrans({"\u00e1": ".", "\u00a1": "\u00b0"})
+
+
+def _layout(head: list[str]) -> Layout | None:
+    cells = split(head[0], "\t")
+    if len(cells) < 2 or not all(cells) or any(map(looks_numeric, cells)):
+        return None
+    pairs = [split_label(cell) for cell in cells]
+    labels = tuple(label for label, _ in pairs)
+    found = {known[1] for label in labels if (known := meaning(label)) is not None}
+    if not {"shear_rate_per_s", "viscosity_Pas"} <= found:
+        return None
+    return Layout(0, 0, labels, tuple(unit for _, unit in pairs))
+
+
+def _recognises(head: list[str]) -> bool:
+    return _layout(head) is not None
+
+
+def _read(file: RawFile) -> Recording:
+    layout = required(_layout(file.head), file, _READER.name)
+    if file.encoding != "latin-1":
+        return read_table(file, layout, _READER, {})
+    spelt = tuple(unit.translate(_MAC_ROMAN) for unit in layout.units)
+    recording = read_table(file, replace(layout, units=spelt), _READER, {})
+    if spelt == layout.units:
+        return recording
+    flag = Flag("mac-roman", f"units spelt in Mac OS Roman: X")
+    return replace(recording, flags=(*recording.flags, flag))
+
+
+FORMAT = Format(_READER.name, _READER.version, "tab-separated flow curve", _recognises, _read)

@@ -1,0 +1,168 @@
+"""Plain CSV of viscosity against time, as laboratories keep it.
+
+Usage
+-----
+Named `viscometer_csv`; detected by a comma-separated row of labels out of the closed list below,
+with one time and one viscosity among them.
+
+Format
+------
+Remarks start with `#`. Labels: one of `time_s`, `time_min`, `time_h`, `elapsed_s`, `elapsed_min`,
+`elapsed_h` (elapsed time since mixing) or `timestamp` (stamps as in `ndj8s`); one of
+`viscosity_mPas`, `viscosity_Pas`; and, as far as there are any, `rotor`, `speed_rpm`,
+`torque_percent`, `temperature_C`. Decimal points. `EEEE` and `----` in the viscosity or torque are
+over-range and below zero; an empty cell or `-.-` of the others is not recorded.
+
+Uncertainties
+-------------
+None in the file.
+
+Metadata
+--------
+Every remark under its line number.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from pipeline.core.errors import RawFileError
+from pipeline.core.records import Recording
+from pipeline.core.units import to_si
+from pipeline.formats.format import Format
+from pipeline.formats.rawfile import RawFile
+from pipeline.formats.viscometer import (
+    BELOW_ZERO,
+    NO_PROBE,
+    OVER_RANGE,
+    Reading,
+    clock_column,
+    number,
+    recording,
+)
+
+_NAME, _VERSION = "viscometer_csv", 1
+_ELAPSED = {f"{stem}_{unit}": unit for stem in ("time", "elapsed") for unit in ("s", "min", "h")}
+_VISCOSITY = {"viscosity_mPas": "mPa.s", "viscosity_Pas": "Pa.s"}
+_OTHERS = {
+    "rotor": ("rotor", "1"),
+    "speed_rpm": ("speed_rpm", "rpm"),
+    "torque_percent": ("torque", "percent"),
+    "temperature_C": ("temperature_K", "C"),
+}
+_KNOWN = {*_ELAPSED, "timestamp", *_VISCOSITY, *_OTHERS}
+
+
+def _labels(head: list[str]) -> tuple[int, list[str]] | None:
+    """Line of the labels, counted from 0, and the labels."""
+    for at, line in enumerate(head):
+        if not line.strip() or line.startswith("#"):
+            continue
+        labels = [cell.strip() for cell in line.split(",")]
+        times = [label for label in labels if label in _ELAPSED or label == "timestamp"]
+        viscosities = [label for label in labels if label in _VISCOSITY]
+        return (at, labels) if times and viscosities else None
+    return None
+
+
+def _recognises(head: list[str]) -> bool:
+    return _labels(head) is not None
+
+
+def _read(file: RawFile) -> Recording:
+    found = _labels(file.head)
+    if found is None:
+        raise RawFileError(
+            file.path, "no row of labels with a time and a viscosity", value=file.head[0],
+            mend="leave the register's `format` empty to have the form detected",
+        )  # fmt: skip
+    first, labels = found
+    _check(file, first + 1, labels)
+    lines = file.body.decode().split("\n")
+    if lines[-1] and not file.ends_open:
+        raise RawFileError(
+            file.path, "no line end after the last row, so its last number may be cut",
+            len(lines), value=lines[-1], mend="export the file again",
+        )  # fmt: skip
+    while lines and not lines[-1].strip():
+        lines.pop()
+    remarks = {
+        f"line {at}": line.strip("# \r") for at, line in enumerate(lines[:first], 1) if line.strip()
+    }
+    readings = [
+        _reading(file, at, line.rstrip("\r"), labels)
+        for at, line in enumerate(lines[first + 1 :], start=first + 2)
+    ]
+    if "timestamp" in labels:
+        clock, times = clock_column(file, [(r.line, r.clock) for r in readings])
+    else:
+        clock, times = "time_s", _elapsed(file, readings, labels)
+    units = {"viscosity": _VISCOSITY[next(label for label in labels if label in _VISCOSITY)]}
+    return recording(file, readings, clock, times, (_NAME, _VERSION), remarks, units)
+
+
+def _check(file: RawFile, line: int, labels: Sequence[str]) -> None:
+    """Refuse labels outside the list, and two that mean the same."""
+    for column, label in enumerate(labels, start=1):
+        if label not in _KNOWN:
+            raise RawFileError(
+                file.path, "an unknown label", line, column, label,
+                f"known labels: {', '.join(sorted(_KNOWN))}",
+            )  # fmt: skip
+    for known in ({*_ELAPSED, "timestamp"}, set(_VISCOSITY), *({label} for label in _OTHERS)):
+        same = [label for label in labels if label in known]
+        if len(same) > 1:
+            raise RawFileError(
+                file.path, "two columns of the same quantity", line,
+                len(labels) - labels[::-1].index(same[-1]), same[-1],
+                "export each quantity once",
+            )  # fmt: skip
+
+
+def _reading(file: RawFile, at: int, line: str, labels: Sequence[str]) -> Reading:
+    cells = [cell.strip() for cell in line.split(",")]
+    if len(cells) != len(labels):
+        raise RawFileError(
+            file.path, f"{len(cells)} fields where the header names {len(labels)}", at,
+            min(len(cells), len(labels)), line.strip(),
+            "export with decimal points, every reading in every row",
+        )  # fmt: skip
+    clock, missing = "", ""
+    numbers: dict[str, float] = {}
+    for column, (label, cell) in enumerate(zip(labels, cells, strict=True), start=1):
+        if label in _ELAPSED or label == "timestamp":
+            clock = cell
+        elif label in _VISCOSITY or label == "torque_percent":
+            name, unit = _OTHERS.get(label) or ("viscosity_Pas", _VISCOSITY[label])
+            if OVER_RANGE.fullmatch(cell):
+                missing = "over-range"
+            elif BELOW_ZERO.fullmatch(cell):
+                missing = "below-zero"
+            elif cell or label in _VISCOSITY:
+                numbers[name] = to_si(number(file, at, column, cell, label), unit)
+        elif not NO_PROBE.fullmatch(cell):
+            name, unit = _OTHERS[label]
+            numbers[name] = to_si(number(file, at, column, cell, label), unit)
+    return Reading(at, clock, numbers, missing)
+
+
+def _elapsed(
+    file: RawFile, readings: Sequence[Reading], labels: Sequence[str]
+) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    label = next(known for known in labels if known in _ELAPSED)
+    column = labels.index(label) + 1
+    times = np.array(
+        [to_si(number(file, r.line, column, r.clock, label), _ELAPSED[label]) for r in readings]
+    )
+    for before, r, step in zip(readings[:-1], readings[1:], np.diff(times), strict=True):
+        if step < 0:
+            raise RawFileError(
+                file.path, f"the time steps back from {before.clock}", r.line, column, r.clock,
+                "one file holds one run, in the order of time",
+            )  # fmt: skip
+    return times
+
+
+FORMAT = Format(_NAME, _VERSION, "plain CSV of viscosity against time", _recognises, _read)
