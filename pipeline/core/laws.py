@@ -1,12 +1,12 @@
 r"""The forms that a law of viscosity can have: each a value and its derivatives by coefficient.
 
-A form is a pure function of the coefficients, the time x, the shear rate (where the form has one)
-and the lengths of its polynomials; `FORMS` is the one list of them.
+A form is a pure function of the coefficients, shape (p,), the times x, shape (n,), the shear rates,
+shape (n,), where the form has any, and the lengths of its polynomials. It gives values, shape (n,),
+and derivatives, shape (n, p). `FORMS` is the one list of them.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -19,56 +19,59 @@ EXPONENTIAL = "exponential"
 POWER_LAW_TO_GEL = "power-law-to-gel"
 POWER_LAW_FLUID = "power-law-fluid"
 
-Form = Callable[[FloatArray, float, float | None, Sequence[int]], tuple[float, FloatArray]]
+Form = Callable[
+    [FloatArray, FloatArray, FloatArray | None, Sequence[int]], tuple[FloatArray, FloatArray]
+]
 
 
-def _powers(x: float, count: int) -> FloatArray:
-    return np.power(x, np.arange(count, dtype=np.float64))
+def _powers(x: FloatArray, count: int) -> FloatArray:
+    return np.power(x[:, None], np.arange(count, dtype=np.float64))
 
 
 def _polynomial(
-    c: FloatArray, x: float, _rate: float | None, _parts: Sequence[int]
-) -> tuple[float, FloatArray]:
+    c: FloatArray, x: FloatArray, _rate: FloatArray | None, _parts: Sequence[int]
+) -> tuple[FloatArray, FloatArray]:
     r"""$y = \sum_k c_k x^k$."""
     powers = _powers(x, len(c))
-    return float(powers @ c), powers
+    return powers @ c, powers
 
 
 def _exponential(
-    c: FloatArray, x: float, _rate: float | None, _parts: Sequence[int]
-) -> tuple[float, FloatArray]:
+    c: FloatArray, x: FloatArray, _rate: FloatArray | None, _parts: Sequence[int]
+) -> tuple[FloatArray, FloatArray]:
     r"""$y = a \exp(b x)$ with coefficients (a, b)."""
-    growth = math.exp(c[1] * x)
-    return float(c[0] * growth), np.array([growth, c[0] * x * growth])
+    growth = np.exp(c[1] * x)
+    return c[0] * growth, np.stack([growth, c[0] * x * growth], axis=1)
 
 
 def _power_law_to_gel(
-    c: FloatArray, x: float, _rate: float | None, _parts: Sequence[int]
-) -> tuple[float, FloatArray]:
-    r"""$y = a (1 - x / x_g)^{-s}$ with coefficients (a, x_g, s).
+    c: FloatArray, x: FloatArray, _rate: FloatArray | None, _parts: Sequence[int]
+) -> tuple[FloatArray, FloatArray]:
+    r"""$y = a (1 - x / x_g)^{-s}$ with coefficients (a, x_g, s), for $x < x_g$.
 
     Source: the divergence of viscosity towards the gel point, D. Stauffer, A. Coniglio, M. Adam,
     Adv. Polym. Sci. 44 (1982) 103.
     """
-    a, gel, s = (float(v) for v in c)
+    a, gel, s = c
     rest = 1.0 - x / gel
     growth = rest**-s
-    return a * growth, np.array(
-        [growth, -a * s * growth / rest * x / gel**2, -a * growth * math.log(rest)]
+    return a * growth, np.stack(
+        [growth, -a * s * growth / rest * x / gel**2, -a * growth * np.log(rest)], axis=1
     )
 
 
 def _power_law_fluid(
-    c: FloatArray, x: float, rate: float | None, parts: Sequence[int]
-) -> tuple[float, FloatArray]:
+    c: FloatArray, x: FloatArray, rate: FloatArray | None, parts: Sequence[int]
+) -> tuple[FloatArray, FloatArray]:
     r"""$y = K(x)\, q^{n(x) - 1}$ at the shear rate q; coefficients of K first, then those of n."""
     if rate is None or len(parts) != 2:
         raise ValueError("a power-law fluid has a shear rate and two polynomials")
     k_powers, n_powers = (_powers(x, count) for count in parts)
-    factor, index = float(k_powers @ c[: parts[0]]), float(n_powers @ c[parts[0] :])
+    factor, index = k_powers @ c[: parts[0]], n_powers @ c[parts[0] :]
     thinning = rate ** (index - 1.0)
-    slopes = [k_powers * thinning, n_powers * (factor * thinning * math.log(rate))]
-    return factor * thinning, np.concatenate(slopes)
+    value = factor * thinning
+    slopes = [k_powers * thinning[:, None], n_powers * (value * np.log(rate))[:, None]]
+    return value, np.concatenate(slopes, axis=1)
 
 
 FORMS: dict[str, Form] = {
@@ -77,3 +80,12 @@ FORMS: dict[str, Form] = {
     POWER_LAW_TO_GEL: _power_law_to_gel,
     POWER_LAW_FLUID: _power_law_fluid,
 }
+
+
+def evaluate(
+    kind: str, coefficients: FloatArray, parts: Sequence[int], x: float, rate: float | None = None
+) -> tuple[float, FloatArray]:
+    """Value and derivatives, shape (p,), of a form at one point."""
+    rates = None if rate is None else np.array([rate])
+    value, slopes = FORMS[kind](coefficients, np.array([x]), rates, parts)
+    return float(value[0]), slopes[0]

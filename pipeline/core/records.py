@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.special import stdtrit
 
 from pipeline.core.errors import OutOfRange
-from pipeline.core.laws import FORMS
+from pipeline.core.laws import evaluate
 from pipeline.core.quantity import Contribution, Quantity
 
 FloatArray = NDArray[np.float64]
@@ -240,7 +240,7 @@ class Law:
         """Evaluate the law at x `[argument_unit]` and, where it has one, a shear rate `[1/s]`."""
         self._inside(x, rate_per_s)
         coefficients = np.asarray(self.coefficients, dtype=np.float64)
-        value, slopes = FORMS[self.kind](coefficients, x, rate_per_s, self.parts)
+        value, slopes = evaluate(self.kind, coefficients, self.parts, x, rate_per_s)
         variance = float(slopes @ np.asarray(self.covariance) @ slopes)
         return Quantity(value, self.unit, max(variance, 0.0) ** 0.5)
 

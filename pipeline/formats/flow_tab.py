@@ -65,7 +65,8 @@ def _read(file: RawFile) -> Recording:
     recording = read_table(file, replace(layout, units=spelt), _READER, {})
     if spelt == layout.units:
         return recording
-    flag = Flag("mac-roman", f"units spelt in Mac OS Roman: X")
+    told = ", ".join(unit for unit in spelt if unit)
+    flag = Flag("mac-roman", f"units spelt in Mac OS Roman, taken for {told}")
     return replace(recording, flags=(*recording.flags, flag))
 
 

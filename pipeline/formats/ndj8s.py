@@ -54,7 +54,8 @@ def _read(file: RawFile) -> Recording:
     if lines[-1] and not file.ends_open:
         raise RawFileError(
             file.path, "no line end after the last reading, so its last number may be cut",
-            len(lines), value=lines[-1], mend="log the run again, or end the line where it is whole",
+            len(lines), value=lines[-1],
+            mend="log the run again, or end the line if it is whole",
         )  # fmt: skip
     remarks: dict[str, str] = {}
     readings = []

@@ -7,10 +7,10 @@ or `Interval data:` and names a shear rate.
 
 Format
 ------
-`key:<TAB>value` lines, the row of labels, a row of remarks (`Konstanter Anteil`), a row of bracketed
-units, then rows that start with a tab; decimal commas or points as the language has it. Columns of
-text with empty units (date of the start) are kept as metadata. The number of points that the header
-states must be there.
+`key:<TAB>value` lines, the row of labels, a row of remarks (`Konstanter Anteil`), a row of
+bracketed units, then rows that start with a tab; decimal commas or points as the language has it.
+Columns of text with empty units (date of the start) are kept as metadata. The number of points that
+the header states must be there.
 
 Uncertainties
 -------------

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from itertools import pairwise
@@ -91,10 +91,10 @@ def recording(
     return Recording(columns, metadata, units, source, tuple(flags))
 
 
-def lines_text(lines: Sequence[int]) -> str:
+def lines_text(lines: Iterable[float]) -> str:
     """Name lines in short: `3, 5-7`."""
     runs: list[list[int]] = []
-    for line in lines:
+    for line in map(int, lines):
         if runs and line == runs[-1][1] + 1:
             runs[-1][1] = line
         else:

@@ -2,10 +2,12 @@
 
 from pipeline.core.technique import Technique
 from pipeline.techniques import breakdown, compression, permittivity, tension
+from pipeline.techniques import compression, tension, viscosity
 
 TECHNIQUES: dict[str, Technique] = {
     "breakdown": breakdown.TECHNIQUE,
     "compression": compression.TECHNIQUE,
     "permittivity": permittivity.TECHNIQUE,
     "tension": tension.TECHNIQUE,
+    "viscosity": viscosity.TECHNIQUE,
 }

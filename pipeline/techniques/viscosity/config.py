@@ -1,0 +1,68 @@
+"""`[viscosity]` in `config/methods.toml`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from pydantic import Field, model_validator
+
+from pipeline.core.instruments import Declared
+
+
+class RateFactor(Declared):
+    """Nominal shear rate per speed of one rotor, and where it is from."""
+
+    per_s_per_rpm: float = Field(gt=0, description="nominal shear rate over speed")
+    source: str = Field(min_length=3, description="who says so")
+
+
+_PAPER = RateFactor(
+    per_s_per_rpm=0.09,
+    source="Sikulskyi et al. 2022: about 0.27 1/s at 3 rpm (rotor not said; the wall of a cylinder "
+    "in a wide cup would give 0.63)",
+)
+
+
+class ViscosityConfig(Declared):
+    """What the room of viscosity asks of a run, and what it reports."""
+
+    window_s: tuple[float, float] = Field(
+        default=(3600.0, 43200.0), description="time since mixing over which a law is fitted"
+    )
+    torque_window: tuple[float, float] = Field(
+        default=(0.10, 1.0), description="part of full torque within which a reading counts"
+    )
+    min_readings: int = Field(default=8, ge=4, description="fewest readings a law is fitted to")
+    max_degree: int = Field(default=5, ge=1, le=7, description="highest polynomial on offer")
+    max_relative_error: float = Field(
+        default=0.15, gt=0, description="root mean square of residual over law, refused beyond"
+    )
+    reading_noise: float = Field(
+        default=0.03, gt=0, description="part of the reading, where a file states no full scale"
+    )
+    stated_times_s: tuple[float, ...] = Field(
+        default=(3600.0, 21600.0, 43200.0), description="times since mixing that are recorded"
+    )
+    limit_viscosity_Pas: float | None = Field(
+        default=None, gt=0, description="viscosity whose time is asked for; None asks for none"
+    )
+    sweep_gap_s: float = Field(
+        default=300.0, gt=0, description="longest pause between the speeds of one sweep"
+    )
+    min_sweeps: int = Field(
+        default=8, ge=5, description="fewest sweeps of two speeds for a power-law fluid"
+    )
+    max_contradicting: float = Field(
+        default=0.2, ge=0, le=1, description="part of contradicting readings that voids a run"
+    )
+    rate_factors: Mapping[str, RateFactor] = Field(
+        default={"3": _PAPER, "4": _PAPER}, description="nominal shear rates by rotor"
+    )
+
+    @model_validator(mode="after")
+    def _ordered(self) -> ViscosityConfig:
+        for name in ("window_s", "torque_window"):
+            low, high = getattr(self, name)
+            if not 0 <= low < high:
+                raise ValueError(f"{name} must rise from 0 or more, not {low:g} to {high:g}")
+        return self

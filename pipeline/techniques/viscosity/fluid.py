@@ -1,0 +1,275 @@
+r"""A power-law fluid whose consistency and index change with time: one surface, and two stages.
+
+$\mu_\mathrm{app}(t, \dot\gamma) = K(t)\, \dot\gamma^{\,n(t) - 1}$ at the nominal shear rate. As
+full scale times rate is one stress for all speeds of a rotor, errors of a constant part of full
+scale are equal errors of the stress $\tau = \mu \dot\gamma = K \dot\gamma^n$, and that is fitted.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pipeline.core.errors import FitRefused
+from pipeline.core.laws import FORMS, POWER_LAW_FLUID
+from pipeline.core.records import Detail, Flag, FloatArray
+from pipeline.estimators.linear import fit_linear
+from pipeline.estimators.polynomial import PolynomialFit, fit_polynomial
+from pipeline.estimators.power_law import PowerLawFit, fit_power_law
+from pipeline.estimators.selection import DECISIVE, aicc, choose
+from pipeline.techniques.viscosity.config import RateFactor, ViscosityConfig
+from pipeline.techniques.viscosity.readings import Readings
+from pipeline.techniques.viscosity.time_law import TimeLaw, drift_of, relative_error
+from pipeline.techniques.viscosity.window import Windowed, combined, common_range
+
+_MAX_DEGREE = {"K": 4, "n": 2}
+_CHECKED_TIMES = 200
+
+
+@dataclass(frozen=True, slots=True)
+class Sweep:
+    """Readings at several speeds, taken together.
+
+    Parameters
+    ----------
+    first, last : index of the first reading and one past the last
+    speeds : lowest and highest of them `[rpm]`
+    """
+
+    first: int
+    last: int
+    speeds: tuple[float, float]
+
+
+def sweeps(readings: Readings, gap_s: float) -> list[Sweep]:
+    """Part a run into sweeps: a speed that comes again, or a pause, begins another one."""
+    found = []
+    first, seen = 0, set[float]()
+    for i in range(len(readings) + 1):
+        ends = i == len(readings) or (
+            i > first
+            and (
+                readings.speed_rpm[i] in seen or readings.time_s[i] - readings.time_s[i - 1] > gap_s
+            )
+        )
+        if ends:
+            if len(seen) > 1:
+                found.append(Sweep(first, i, (min(seen), max(seen))))
+            first, seen = i, set()
+        if i < len(readings):
+            seen.add(float(readings.speed_rpm[i]))
+    return found
+
+
+def is_swept(readings: Readings, config: ViscosityConfig) -> bool:
+    """Say whether a run has enough sweeps over speeds to tell a power law from a Newtonian one."""
+    if not readings.of_full_scale:
+        return False
+    return len(sweeps(readings, config.sweep_gap_s)) >= config.min_sweeps
+
+
+def rate_factor(readings: Readings, config: ViscosityConfig) -> RateFactor:
+    """Find the declared shear rate per speed of the one rotor that was used.
+
+    Raises
+    ------
+    FitRefused : several rotors, or none declared for this one
+    """
+    rotors = sorted({f"{r:g}" for r in readings.rotor.tolist()})
+    if len(rotors) > 1:
+        raise FitRefused(
+            f"a power law needs one rotor, not {' and '.join(rotors)}: their shear rates differ; "
+            "log each rotor's run to a file of its own"
+        )
+    if rotors[0] not in config.rate_factors:
+        known = ", ".join(sorted(config.rate_factors))
+        raise FitRefused(
+            f"no shear rate is declared for rotor {rotors[0]} (there is one for: {known}); declare "
+            "[viscosity.rate_factors] with its source"
+        )
+    return config.rate_factors[rotors[0]]
+
+
+def fit_fluid(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeLaw | None:
+    """Fit K(t) and n(t) as one surface, with the degrees that the two stages support.
+
+    Returns
+    -------
+    the law, or None where a Newtonian liquid explains the readings as well
+
+    Raises
+    ------
+    FitRefused : too few sweeps, no two speeds common to all of them, or no declared shear rate
+    """
+    swept = [_swept(window, config) for window in windows]
+    readings = combined([window for window, _ in swept])
+    factor = rate_factor(readings, config)
+    times, rates = readings.time_s, factor.per_s_per_rpm * readings.speed_rpm
+    stages = two_stages(swept, factor.per_s_per_rpm)
+    degrees = stages.factor.degree, stages.index.degree
+    stress = readings.viscosity_Pas * rates
+    surface = fit_power_law(times, rates, stress, *degrees, "of full scale")
+    score = _scores(surface, times, rates, stress)
+    if score["Newtonian"] <= score["power law"] + DECISIVE:
+        return None
+    coefficients = np.concatenate([surface.factor, surface.exponent])
+    parts = (len(surface.factor), len(surface.exponent))
+    law, slopes = FORMS[POWER_LAW_FLUID](coefficients, times, rates, parts)
+    choice = f"power law AICc {score['power law']:.1f}, Newtonian {score['Newtonian']:.1f}"
+    fitted = TimeLaw(
+        kind=POWER_LAW_FLUID,
+        coefficients=coefficients,
+        parts=parts,
+        covariance=surface.covariance,
+        drift=drift_of(
+            surface.covariance,
+            surface.fit.error_variance,
+            slopes * rates[:, None],
+            np.ones(len(times)),
+            readings.calibration_Pas * rates,
+        ),
+        valid=common_range([window.valid for window, _ in swept]),
+        rates=_common_rates([s for _, found in swept for s in found], factor.per_s_per_rpm),
+        relative_error=relative_error(readings.viscosity_Pas, law),
+        dof=surface.fit.dof,
+        name=f"{POWER_LAW_FLUID}, K of degree {degrees[0]} and n of degree {degrees[1]}",
+        reason=f"{stages.reason}; {choice}",
+        diagnostics={
+            "choice": choice,
+            "aicc power law": score["power law"],
+            "aicc Newtonian": score["Newtonian"],
+            **stages.diagnostics,
+            "rate_per_rpm_per_s": factor.per_s_per_rpm,
+            "rate_source": factor.source,
+        },
+    )
+    return _compared(fitted, stages)
+
+
+def _swept(window: Windowed, config: ViscosityConfig) -> tuple[Windowed, list[Sweep]]:
+    """Cut a run to its sweeps; the range of the window shrinks where the sweeps end early."""
+    found = sweeps(window.readings, config.sweep_gap_s)
+    if len(found) < config.min_sweeps:
+        raise FitRefused(
+            f"{len(found)} sweeps over two speeds or more, and a power law needs "
+            f"{config.min_sweeps}; sweep the speeds more often",
+            {"sweeps": len(found), "sweeps_needed": config.min_sweeps},
+        )
+    first, last = found[0].first, found[-1].last
+    times = window.readings.time_s
+    valid = (
+        window.valid[0] if first == 0 else float(times[first]),
+        window.valid[1] if last == len(times) else float(times[last - 1]),
+    )
+    moved = [replace(s, first=s.first - first, last=s.last - first) for s in found]
+    cut = replace(window, readings=window.readings.where(slice(first, last)), valid=valid)
+    return cut, moved
+
+
+def _common_rates(found: Sequence[Sweep], per_s_per_rpm: float) -> tuple[float, float]:
+    """Range of the shear rates that every sweep spans `[1/s]`."""
+    slow, fast = max(s.speeds[0] for s in found), min(s.speeds[1] for s in found)
+    if not slow < fast:
+        raise FitRefused(
+            f"no two speeds are common to all sweeps: one begins at {slow:g} rpm, another ends at "
+            f"{fast:g} rpm; sweep the same speeds throughout"
+        )
+    return per_s_per_rpm * slow, per_s_per_rpm * fast
+
+
+@dataclass(frozen=True, slots=True)
+class Stages:
+    """K and n of each sweep, and a polynomial through each, as the paper did it.
+
+    Parameters
+    ----------
+    factor, index : polynomials K(t) and n(t)
+    """
+
+    factor: PolynomialFit
+    index: PolynomialFit
+    reason: str
+    diagnostics: dict[str, Detail]
+
+
+def two_stages(swept: Sequence[tuple[Windowed, Sequence[Sweep]]], per_s_per_rpm: float) -> Stages:
+    """Fit ln mu against ln rate in each sweep, then K and n against time.
+
+    Weights are those of the error model: a constant part of full scale is an error of ln mu in
+    inverse proportion to the torque.
+    """
+    times, ks, ns, u_ks, u_ns = [], [], [], [], []
+    for window, found in swept:
+        for sweep in found:
+            part = window.readings.where(slice(sweep.first, sweep.last))
+            logs = np.log(per_s_per_rpm * part.speed_rpm)
+            fit = fit_linear(
+                np.stack([np.ones_like(logs), logs], axis=1),
+                np.log(part.viscosity_Pas),
+                part.noise_Pas / part.viscosity_Pas,
+                "known",
+            )
+            k = math.exp(fit.parameters[0])
+            times.append(float(part.time_s.mean()))
+            ks.append(k)
+            ns.append(1.0 + float(fit.parameters[1]))
+            u_ks.append(k * float(fit.standard_errors[0]))
+            u_ns.append(float(fit.standard_errors[1]))
+    factor = _chosen("K", times, ks, u_ks)
+    index = _chosen("n", times, ns, u_ns)
+    said: dict[str, Detail] = {"two_stage_sweeps": len(times)}
+    for name, (fit_, _) in (("K", factor), ("n", index)):
+        for power, (c, u) in enumerate(zip(fit_.coefficients, fit_.standard_errors, strict=True)):
+            said[f"two_stage_{name}_{power}"] = float(c)
+            said[f"two_stage_u_{name}_{power}"] = float(u)
+    reason = f"K is a {factor[1]}; n is a {index[1]}"
+    return Stages(factor[0], index[0], reason, said)
+
+
+def _chosen(
+    name: str, times: Sequence[float], values: Sequence[float], u: Sequence[float]
+) -> tuple[PolynomialFit, str]:
+    def fit(degree: int) -> Callable[[], PolynomialFit]:
+        return lambda: fit_polynomial(times, values, degree, u)
+
+    choice = choose([(f"polynomial of degree {d}", fit(d)) for d in range(_MAX_DEGREE[name] + 1)])
+    return choice.fit, choice.reason
+
+
+def _scores(
+    surface: PowerLawFit, times: FloatArray, rates: FloatArray, stress: FloatArray
+) -> dict[str, float]:
+    """AICc of the surface and of a Newtonian liquid whose viscosity is a polynomial like K."""
+    scale = float(times.max())
+    newtonian = fit_linear(
+        np.stack([rates * (times / scale) ** k for k in range(len(surface.factor))], axis=1), stress
+    )
+    return {"Newtonian": aicc(newtonian), "power law": aicc(surface.fit)}
+
+
+def _compared(law: TimeLaw, stages: Stages) -> TimeLaw:
+    """Say how far the two ways of fitting differ, and where the surface falls with time."""
+    rate = law.usual_rate
+    if rate is None:
+        return law
+    times = np.linspace(stages.factor.low, stages.factor.high, _CHECKED_TIMES)
+    times = times[(times >= law.valid[0]) & (times <= law.valid[1])]
+    surface = np.array([law.at(float(t))[0] for t in times])
+    staged = stages.factor(times)[0] * rate ** (stages.index(times)[0] - 1.0)
+    apart = float(np.max(np.abs(staged / surface - 1.0)))
+    said = {**law.diagnostics, "two_stage_largest_difference": apart}
+    falls = np.flatnonzero(np.diff(surface) < 0)
+    flags = law.flags
+    if falls.size:
+        flags += (
+            Flag(
+                "falls",
+                f"viscosity at {rate:.3g} 1/s falls between {times[falls[0]] / 3600:.3g} h and "
+                f"{times[falls[-1] + 1] / 3600:.3g} h, by {1 - surface.min() / surface[0]:.1%} "
+                "from the start at most",
+            ),
+        )
+    return replace(law, diagnostics=said, flags=flags)

@@ -1,0 +1,208 @@
+"""Laws of a Newtonian liquid that thickens: polynomials, an exponential, a power law to the gel."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from pipeline.core.errors import FitRefused
+from pipeline.core.laws import EXPONENTIAL, FORMS, POLYNOMIAL, POWER_LAW_TO_GEL, evaluate
+from pipeline.core.records import Detail, Flag, FloatArray
+from pipeline.estimators.fit import Fit
+from pipeline.estimators.linear import fit_linear
+from pipeline.estimators.monotone import fit_non_decreasing
+from pipeline.estimators.nonlinear import NonlinearFit, fit_nonlinear
+from pipeline.estimators.polynomial import PolynomialFit
+from pipeline.estimators.selection import Choice, choose
+from pipeline.techniques.viscosity.config import ViscosityConfig
+from pipeline.techniques.viscosity.readings import Readings
+from pipeline.techniques.viscosity.time_law import TimeLaw, drift_of, relative_error
+from pipeline.techniques.viscosity.window import Windowed, combined, common_range
+
+# A law that predicts left-out readings worse than the best by more than this is flagged.
+_PREDICTS_WORSE = 1.1
+_GEL_TIMES = np.geomspace(1.02, 8.0, 24)  # over the last time: where to start looking for the gel
+
+
+def fit_newtonian(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeLaw:
+    """Choose the smallest law that the readings support and say what it is worth.
+
+    Polynomials are kept positive and from falling; candidates are compared by AICc and the choice
+    is checked by leave-one-out cross-validation (see `estimators.selection`).
+
+    Raises
+    ------
+    FitRefused : no candidate could be fitted, or the best leaves too large a relative error
+    """
+    readings = combined(windows)
+    choice = choose(_candidates(readings, config))
+    kind, coefficients, covariance = _parameters(choice)
+    law, slopes = FORMS[kind](coefficients, readings.time_s, None, ())
+    relative = relative_error(readings.viscosity_Pas, law)
+    if relative > config.max_relative_error:
+        raise FitRefused(
+            f"the best law, {choice.name}, misses the readings by {relative:.1%} (root mean "
+            f"square), more than {config.max_relative_error:.0%}: none of the laws on offer "
+            "describes this run",
+            {"relative_error": relative, **scores(choice)},
+        )
+    return TimeLaw(
+        kind=kind,
+        coefficients=coefficients,
+        parts=(),
+        covariance=covariance,
+        drift=drift_of(
+            covariance,
+            choice.fit.error_variance,
+            slopes,
+            readings.noise_Pas,
+            readings.calibration_Pas,
+        ),
+        valid=_valid(kind, coefficients, windows),
+        rates=None,
+        relative_error=relative,
+        dof=choice.fit.dof,
+        name=choice.name,
+        reason=choice.reason,
+        diagnostics=scores(choice),
+        flags=_flags(choice),
+    )
+
+
+def _candidates(readings: Readings, config: ViscosityConfig) -> list[tuple[str, Callable[[], Fit]]]:
+    """All laws on offer, the one with fewest coefficients first."""
+    offers: list[tuple[str, Callable[[], Fit]]] = [
+        (f"{POLYNOMIAL} of degree {degree}", partial(_polynomial, readings, degree))
+        for degree in range(config.max_degree + 1)
+    ]
+    offers.insert(2, (EXPONENTIAL, partial(_exponential, readings)))
+    offers.insert(4, (POWER_LAW_TO_GEL, partial(_power_law_to_gel, readings)))
+    return offers
+
+
+def _polynomial(readings: Readings, degree: int) -> PolynomialFit:
+    return fit_non_decreasing(
+        readings.time_s, readings.viscosity_Pas, degree, 0.0, readings.noise_Pas
+    ).fit
+
+
+def _exponential(readings: Readings) -> NonlinearFit:
+    t, y, weight = _logarithms(readings)
+    line = fit_linear(np.stack([np.ones_like(t), t], axis=1), y, weight).parameters
+    if not line[1] > 0:
+        raise FitRefused(f"the logarithm of viscosity falls, by {-line[1]:.3g} per s")
+    return _nonlinear(EXPONENTIAL, readings, np.array([np.exp(line[0]), line[1]]))
+
+
+def _power_law_to_gel(readings: Readings) -> NonlinearFit:
+    """Start from the gel time, of many, whose straight line in logarithms fits best."""
+    t, y, weight = _logarithms(readings)
+    best: tuple[float, FloatArray] | None = None
+    for gel in float(t.max()) * _GEL_TIMES:
+        design = np.stack([np.ones_like(t), -np.log(1.0 - t / gel)], axis=1)
+        fit = fit_linear(design, y, weight)
+        if best is None or fit.residual_sd < best[0]:
+            best = fit.residual_sd, np.array([np.exp(fit.parameters[0]), gel, fit.parameters[1]])
+    if best is None or not best[1][2] > 0:
+        raise FitRefused("viscosity does not grow towards a gel point")
+    end = float(t.max()) * (1.0 + 1e-6)
+    return _nonlinear(POWER_LAW_TO_GEL, readings, best[1], np.array([-np.inf, end, -np.inf]))
+
+
+def _logarithms(readings: Readings) -> tuple[FloatArray, FloatArray, FloatArray]:
+    y = readings.viscosity_Pas
+    if not np.all(y > 0):
+        raise FitRefused("a viscosity of zero or less has no logarithm")
+    return readings.time_s, np.log(y), readings.noise_Pas / y
+
+
+def _nonlinear(
+    kind: str, readings: Readings, start: FloatArray, lower: FloatArray | None = None
+) -> NonlinearFit:
+    """Fit a form with coefficients scaled to about 1, as its search likes them."""
+    form, times = FORMS[kind], readings.time_s
+
+    def model(b: FloatArray) -> FloatArray:
+        return form(b * start, times, None, ())[0]
+
+    def jacobian(b: FloatArray) -> FloatArray:
+        return form(b * start, times, None, ())[1] * start
+
+    with np.errstate(over="ignore", invalid="ignore"):
+        fit = fit_nonlinear(
+            model,
+            jacobian,
+            np.ones(len(start)),
+            readings.viscosity_Pas,
+            readings.noise_Pas,
+            lower=None if lower is None else lower / start,
+        )
+    return _scaled(fit, start)
+
+
+def _scaled(fit: NonlinearFit, scale: FloatArray) -> NonlinearFit:
+    return replace(
+        fit,
+        parameters=fit.parameters * scale,
+        covariance=fit.covariance * np.outer(scale, scale),
+    )
+
+
+def _parameters(choice: Choice[Fit]) -> tuple[str, FloatArray, FloatArray]:
+    """Kind, coefficients and covariance of the chosen fit."""
+    fit = choice.fit
+    if isinstance(fit, PolynomialFit):
+        return POLYNOMIAL, fit.coefficients, fit.covariance
+    if isinstance(fit, NonlinearFit):
+        return choice.name, fit.parameters, fit.covariance
+    raise TypeError(f"{choice.name} is neither a polynomial nor a nonlinear fit")
+
+
+def _valid(kind: str, coefficients: FloatArray, windows: Sequence[Windowed]) -> tuple[float, float]:
+    """Reach to the edges of the window where the law goes on rising, else to the last readings."""
+    outer = common_range([w.valid for w in windows])
+    inner = common_range(
+        [(float(w.readings.time_s[0]), float(w.readings.time_s[-1])) for w in windows]
+    )
+    if kind == POWER_LAW_TO_GEL and outer[1] >= coefficients[1]:
+        return inner
+    low, first, last, high = (
+        evaluate(kind, coefficients, (), t)[0] for t in (outer[0], *inner, outer[1])
+    )
+    return (
+        outer[0] if 0 < low <= first else inner[0],
+        outer[1] if high >= last else inner[1],
+    )
+
+
+def scores(choice: Choice[Fit]) -> dict[str, Detail]:
+    """Keep what every candidate scored, or why it has no score."""
+    said: dict[str, Detail] = {"choice": choice.reason}
+    for tried in choice.tried:
+        if tried.aicc is None:
+            said[f"refused {tried.name}"] = tried.refusal
+            continue
+        said[f"aicc {tried.name}"] = tried.aicc
+        if tried.leave_one_out_sd is not None:
+            said[f"leave-one-out {tried.name}"] = tried.leave_one_out_sd
+    return said
+
+
+def _flags(choice: Choice[Fit]) -> tuple[Flag, ...]:
+    """Flag a choice that cross-validation does not bear out."""
+    predicted = {t.name: t.leave_one_out_sd for t in choice.tried if t.leave_one_out_sd is not None}
+    if choice.name not in predicted:
+        return ()
+    best = min(predicted, key=lambda name: predicted[name])
+    if predicted[choice.name] <= _PREDICTS_WORSE * predicted[best]:
+        return ()
+    return (
+        Flag(
+            "cross-validation",
+            f"left-out readings are predicted to {predicted[choice.name]:.3g} sigma by "
+            f"{choice.name} and to {predicted[best]:.3g} by {best}",
+        ),
+    )

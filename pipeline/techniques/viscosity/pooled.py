@@ -1,0 +1,181 @@
+"""One law of a material from all its runs: each run has its own level, the law is their mean."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from pipeline.core.laws import FORMS, POLYNOMIAL, POWER_LAW_FLUID
+from pipeline.core.properties import property_key
+from pipeline.core.records import FloatArray, Law, Origin, Specimen
+from pipeline.techniques.viscosity.config import ViscosityConfig
+from pipeline.techniques.viscosity.fluid import fit_fluid, is_swept
+from pipeline.techniques.viscosity.newtonian import fit_newtonian
+from pipeline.techniques.viscosity.time_law import TimeLaw
+from pipeline.techniques.viscosity.values import CONSISTENCY, INDEX, VISCOSITY
+from pipeline.techniques.viscosity.window import Windowed
+
+_ROUNDS = 3  # levels and law settle at once: both are nearly what they were after the first round
+
+
+def fit_law(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeLaw:
+    """Fit a power-law fluid where speeds were swept and show one, else a Newtonian law.
+
+    Raises
+    ------
+    FitRefused : no law describes the readings
+    """
+    if all(is_swept(w.readings, config) for w in windows):
+        fluid = fit_fluid(windows, config)
+        if fluid is not None:
+            return fluid
+    return fit_newtonian(windows, config)
+
+
+def fit_runs(windows: Sequence[Windowed], config: ViscosityConfig) -> tuple[TimeLaw, FloatArray]:
+    """Fit one law to several runs, each multiplied by a level of its own.
+
+    Returns
+    -------
+    law, levels : the levels, shape (runs,), have the mean 1, so that the law is that of the mean
+
+    Raises
+    ------
+    FitRefused : as in `fit_law`
+    """
+    levels = np.ones(len(windows))
+    law = fit_law(windows, config)
+    for _ in range(_ROUNDS if len(windows) > 1 else 0):
+        levels = levels * np.array(
+            [_level(law, _scaled(w, f)) for w, f in zip(windows, levels, strict=True)]
+        )
+        levels /= levels.mean()
+        law = fit_law([_scaled(w, f) for w, f in zip(windows, levels, strict=True)], config)
+    return law, levels
+
+
+def _scaled(window: Windowed, level: float) -> Windowed:
+    r = window.readings
+    return replace(
+        window,
+        readings=replace(
+            r,
+            viscosity_Pas=r.viscosity_Pas / level,
+            noise_Pas=r.noise_Pas / level,
+            calibration_Pas=r.calibration_Pas / level,
+        ),
+    )
+
+
+def _level(law: TimeLaw, window: Windowed) -> float:
+    """Weighted ratio of a run to the law, over the times and rates that the law was fitted to."""
+    r = window.readings
+    inside = (r.time_s >= law.valid[0]) & (r.time_s <= law.valid[1])
+    rates = None
+    if law.kind == POWER_LAW_FLUID:
+        rates = float(law.diagnostics["rate_per_rpm_per_s"]) * r.speed_rpm[inside]
+    model, _ = FORMS[law.kind](law.coefficients, r.time_s[inside], rates, law.parts)
+    weight = 1.0 / np.square(r.noise_Pas[inside])
+    return float(np.sum(weight * r.viscosity_Pas[inside] * model) / np.sum(weight * model**2))
+
+
+def laws_of(
+    law: TimeLaw,
+    levels: FloatArray,
+    specimen: Specimen,
+    method: str,
+    origins: tuple[Origin, ...],
+) -> tuple[Law, ...]:
+    """Make the laws of a card: viscosity, and K and n of a power-law fluid each by itself.
+
+    The covariance has the scatter about the law, the scatter of the levels of the runs over the
+    root of their number, and the calibration; its degrees of freedom are those in the middle of
+    the range (Welch-Satterthwaite).
+    """
+    covariance, dof = _whole_covariance(law, levels)
+    whole = Law(
+        key=VISCOSITY,
+        material=specimen.material,
+        campaign=specimen.campaign,
+        kind=law.kind,
+        unit=property_key(VISCOSITY).unit,
+        argument="time since mixing",
+        argument_unit="s",
+        coefficients=tuple(law.coefficients.tolist()),
+        covariance=_nested(covariance),
+        valid=law.valid,
+        conditions=specimen.conditions,
+        method=f"{law.name} of {_runs(len(levels))}; {method}; {law.reason}",
+        origins=origins,
+        flags=law.flags,
+        diagnostics={
+            "relative_error": law.relative_error,
+            "runs": len(levels),
+            **{f"level_of_run_{i}": float(f) for i, f in enumerate(levels, start=1)},
+            **law.diagnostics,
+        },
+        parts=law.parts,
+        rates=law.rates,
+        degrees_of_freedom=dof,
+    )
+    if law.kind != POWER_LAW_FLUID:
+        return (whole,)
+    split = law.parts[0]
+    return (
+        whole,
+        _part(whole, CONSISTENCY, covariance, slice(0, split)),
+        _part(whole, INDEX, covariance, slice(split, None)),
+    )
+
+
+def _part(whole: Law, key: str, covariance: FloatArray, part: slice) -> Law:
+    """Take K or n out of a power-law fluid as a polynomial in time."""
+    return replace(
+        whole,
+        key=key,
+        kind=POLYNOMIAL,
+        unit=property_key(key).unit,
+        coefficients=whole.coefficients[part],
+        covariance=_nested(covariance[part, part]),
+        diagnostics={},
+        parts=(),
+        rates=None,
+    )
+
+
+def _whole_covariance(law: TimeLaw, levels: FloatArray) -> tuple[FloatArray, float]:
+    """Covariance with every error, and its degrees of freedom."""
+    drift = np.outer(law.drift, law.drift)
+    n = len(levels)
+    if n == 1:
+        return law.covariance + drift, float(law.dof)
+    upwards = _growth(law)
+    level_variance = float(np.var(levels, ddof=1)) / n
+    level = level_variance * np.outer(upwards, upwards)
+    _, slopes = law.at(0.5 * (law.valid[0] + law.valid[1]))
+    scatter_u2, level_u2, drift_u2 = (
+        max(float(slopes @ c @ slopes), 0.0) for c in (law.covariance, level, drift)
+    )
+    terms = level_u2**2 / (n - 1) + scatter_u2**2 / law.dof
+    dof = (scatter_u2 + level_u2 + drift_u2) ** 2 / terms if terms > 0 else math.inf
+    return law.covariance + level + drift, min(dof, 1e6)
+
+
+def _growth(law: TimeLaw) -> FloatArray:
+    """Change of the coefficients when viscosity grows by a factor, per unit of the factor."""
+    c = law.coefficients.copy()
+    if law.kind == POLYNOMIAL:
+        return c
+    c[law.parts[0] if law.parts else 1 :] = 0.0
+    return c
+
+
+def _nested(matrix: FloatArray) -> tuple[tuple[float, ...], ...]:
+    return tuple(tuple(row) for row in matrix.tolist())
+
+
+def _runs(n: int) -> str:
+    return "one run: the scatter between runs is not seen" if n == 1 else f"{n} runs"

@@ -1,0 +1,185 @@
+"""The readings of a run that can be trusted, each with the errors of the instrument."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from pipeline.core.errors import FitRefused, OutOfRange
+from pipeline.core.instruments import Machine
+from pipeline.core.records import Flag, FloatArray, Recording
+from pipeline.core.viscometer import full_scale_Pas
+from pipeline.formats.viscometer import lines_text
+from pipeline.techniques.viscosity.config import ViscosityConfig
+
+# Torque is printed to 0.1 % and viscosity to 1 mPa.s: half of each, and as much again for an
+# instrument that cuts where it should round.
+_TORQUE_STEP = 0.001
+_VISCOSITY_STEP_PAS = 0.001
+
+
+@dataclass(frozen=True, slots=True)
+class Readings:
+    """Viscosity against time since mixing.
+
+    Parameters
+    ----------
+    time_s, viscosity_Pas : shape (n,)
+    noise_Pas : standard deviation of a single reading, shape (n,)
+    calibration_Pas : what one standard uncertainty of the calibration adds to each reading, all of
+        them together, shape (n,); zeros where the file states no full scale
+    speed_rpm, rotor : shape (n,); zeros where the file does not say
+    line : of the file, shape (n,)
+    errors : the error model in words
+    """
+
+    time_s: FloatArray
+    viscosity_Pas: FloatArray
+    noise_Pas: FloatArray
+    calibration_Pas: FloatArray
+    speed_rpm: FloatArray
+    rotor: FloatArray
+    line: FloatArray
+    errors: str
+    flags: tuple[Flag, ...] = ()
+
+    def __len__(self) -> int:
+        return len(self.time_s)
+
+    @property
+    def of_full_scale(self) -> bool:
+        """Whether rotor and speed are known, and with them the full scale."""
+        return bool(np.all(self.rotor > 0))
+
+    @property
+    def columns(self) -> dict[str, FloatArray]:
+        """Every column by name."""
+        return {name: getattr(self, name) for name in _COLUMNS}
+
+    def where(self, chosen: Any) -> Readings:
+        """Keep the chosen readings (a mask, an index array or a slice)."""
+        return replace(self, **{name: column[chosen] for name, column in self.columns.items()})
+
+
+_COLUMNS = (
+    "time_s",
+    "viscosity_Pas",
+    "noise_Pas",
+    "calibration_Pas",
+    "speed_rpm",
+    "rotor",
+    "line",
+)
+
+
+def from_curve(curve: Mapping[str, FloatArray]) -> Readings:
+    """Take readings back from the curve of a measurement, where their columns were put."""
+    return Readings(**{name: curve[name] for name in _COLUMNS}, errors="")
+
+
+def audited(
+    recording: Recording, time_s: FloatArray, machine: Machine, config: ViscosityConfig
+) -> Readings:
+    r"""Hold each reading against its full scale and leave out, by line, what cannot be trusted.
+
+    With rotor and speed known, errors are constant parts of full scale; else of the reading.
+
+    Raises
+    ------
+    FitRefused : no viscosity, a rotor or speed that does not exist, or too many readings whose
+        viscosity, torque and speed contradict each other
+    """
+    columns = recording.columns
+    if "viscosity_Pas" not in columns:
+        raise FitRefused("the file has no viscosity")
+    viscosity = columns["viscosity_Pas"]
+    line = columns["line"] if "line" in columns else np.arange(1.0, len(viscosity) + 1)
+    if "rotor" not in columns or "speed_rpm" not in columns:
+        readings = _of_reading(time_s, viscosity, line, config)
+        return _positive(readings)
+    rotor, speed = columns["rotor"], columns["speed_rpm"]
+    full = _full_scales(rotor, speed, line)
+    readings = Readings(
+        time_s, viscosity, machine.torque_noise * full, machine.u_torque_calibration * full, speed,
+        rotor, line,
+        f"errors a constant part of full scale ({machine.torque_noise:.2%} noise of a reading, "
+        f"{machine.u_torque_calibration:.2%} calibration, shared)",
+    )  # fmt: skip
+    torque = viscosity / full
+    keep = np.ones(len(viscosity), dtype=bool)
+    flags: list[Flag] = []
+    if "torque" in columns:
+        slack = _TORQUE_STEP + _VISCOSITY_STEP_PAS / full
+        wrong = np.abs(columns["torque"] - torque) > slack
+        if np.mean(wrong) > config.max_contradicting:
+            at = int(np.argmax(wrong))
+            raise FitRefused(
+                f"viscosity, torque and speed contradict each other in {int(wrong.sum())} of "
+                f"{len(wrong)} readings, first in line {int(line[at])}: {viscosity[at]:g} Pa.s of "
+                f"{full[at]:g} Pa.s full scale is {100 * torque[at]:.1f} %, not "
+                f"{100 * columns['torque'][at]:.1f} %; check rotor, speed and unit",
+                {"contradicting": int(wrong.sum()), "readings": len(wrong)},
+            )
+        keep &= ~wrong
+        flags += _left_out("contradicting", "viscosity, torque and speed disagree", line[wrong])
+    else:
+        flags.append(Flag("torque-not-recorded", "viscosity could not be held against the torque"))
+    low, high = config.torque_window
+    outside = keep & ((torque < low) | (torque > high))
+    detail = f"torque outside {100 * low:g}-{100 * high:g} %"
+    flags += _left_out("outside-torque-window", detail, line[outside])
+    good = readings.where(keep & ~outside)
+    changes = _changes(good)
+    return replace(good, flags=(*flags, *changes))
+
+
+def _of_reading(
+    time_s: FloatArray, viscosity: FloatArray, line: FloatArray, config: ViscosityConfig
+) -> Readings:
+    zeros = np.zeros(len(viscosity))
+    return Readings(
+        time_s, viscosity, config.reading_noise * np.abs(viscosity), zeros, zeros, zeros, line,
+        "errors a constant part of the reading: the file states no rotor and speed",
+    )  # fmt: skip
+
+
+def _positive(readings: Readings) -> Readings:
+    good = readings.viscosity_Pas > 0
+    flags = _left_out("not-positive", "a viscosity of zero or less", readings.line[~good])
+    return replace(readings.where(good), flags=tuple(flags))
+
+
+def _full_scales(rotor: FloatArray, speed: FloatArray, line: FloatArray) -> FloatArray:
+    known: dict[tuple[float, float], float] = {}
+    for pair, at in zip(zip(rotor.tolist(), speed.tolist(), strict=True), line, strict=True):
+        if pair not in known:
+            try:
+                if not float(pair[0]).is_integer():
+                    raise OutOfRange(f"an NDJ-8S has rotors 1 to 4, not {pair[0]:g}")
+                known[pair] = full_scale_Pas(int(pair[0]), pair[1])
+            except OutOfRange as error:
+                raise FitRefused(f"line {int(at)}: {error}") from error
+    return np.array([known[pair] for pair in zip(rotor.tolist(), speed.tolist(), strict=True)])
+
+
+def _left_out(name: str, why: str, lines: FloatArray) -> list[Flag]:
+    if not lines.size:
+        return []
+    return [Flag(name, f"{why}: {lines.size} readings left out, lines {lines_text(lines)}")]
+
+
+def _changes(readings: Readings) -> list[Flag]:
+    """Say where rotor or speed was changed, unless the speeds are swept all the time."""
+    settings = list(zip(readings.rotor.tolist(), readings.speed_rpm.tolist(), strict=True))
+    changed = [i for i in range(1, len(settings)) if settings[i] != settings[i - 1]]
+    if not changed or len(changed) > len(set(settings)) + 3:
+        return []
+    said = "; ".join(
+        f"{settings[i - 1][0]:g}#{settings[i - 1][1]:g} to {settings[i][0]:g}#{settings[i][1]:g} "
+        f"rpm at line {int(readings.line[i])}"
+        for i in changed
+    )
+    return [Flag("setting-changed", f"{said}; each reading has the errors of its own full scale")]

@@ -1,0 +1,132 @@
+"""Which readings of a run a law is fitted to, and for which times it may then answer."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pipeline.core.errors import FitRefused
+from pipeline.core.records import Flag
+from pipeline.techniques.viscosity.config import ViscosityConfig
+from pipeline.techniques.viscosity.readings import Readings
+
+_INTERVAL_CHANGE = 2.0  # a sampling interval that grows by more than this is another method
+
+
+@dataclass(frozen=True, slots=True)
+class Windowed:
+    """The readings to fit, and the rule that chose them.
+
+    Parameters
+    ----------
+    valid : range of times for which readings speak `[s]`: the window as far as it is bracketed
+    rule : in words
+    start_s : where stated times and doubling count from `[s]`
+    whole : the configured window was used, not the rule for short runs
+    """
+
+    readings: Readings
+    valid: tuple[float, float]
+    rule: str
+    start_s: float
+    whole: bool
+
+
+def windowed(readings: Readings, config: ViscosityConfig) -> Windowed:
+    """Cut a run to the configured window, or from its minimum on if it ends before that begins.
+
+    Raises
+    ------
+    FitRefused : fewer than `min_readings` are left
+    """
+    if len(readings) == 0:
+        raise FitRefused(
+            "no reading is left: none is within the torque window; change rotor or speed"
+        )
+    low, high = config.window_s
+    if readings.time_s[-1] > low:
+        inside = (readings.time_s >= low) & (readings.time_s <= high)
+        chosen = readings.where(inside)
+        rule = f"readings from {low / 3600:g} h to {high / 3600:g} h after mixing"
+        _enough(chosen, config, rule)
+        first, last = float(chosen.time_s[0]), float(chosen.time_s[-1])
+        valid = (
+            low if readings.time_s[0] < low else first,
+            high if readings.time_s[-1] > high else last,
+        )
+        return Windowed(chosen, valid, rule, low, True)
+    return _short(readings, config)
+
+
+def _short(readings: Readings, config: ViscosityConfig) -> Windowed:
+    """From the minimum to the end, or to where the measuring method changes."""
+    one_method, flags = _first_method(readings)
+    lowest = int(np.argmin(one_method.viscosity_Pas))
+    chosen = one_method.where(slice(lowest, None))
+    rule = (
+        f"the run ends {readings.time_s[-1]:g} s after mixing, before the window begins: readings "
+        "from the minimum on"
+    )
+    _enough(chosen, config, rule)
+    valid = (float(chosen.time_s[0]), float(chosen.time_s[-1]))
+    chosen = replace(chosen, flags=(*chosen.flags, *flags))
+    return Windowed(chosen, valid, rule, valid[0], False)
+
+
+def _first_method(readings: Readings) -> tuple[Readings, tuple[Flag, ...]]:
+    """Cut a run that does not state its settings where its sampling slows down for good."""
+    steps = np.diff(readings.time_s)
+    if readings.of_full_scale or len(steps) < 3:
+        return readings, ()
+    slower = np.flatnonzero(steps[1:] > _INTERVAL_CHANGE * steps[:-1]) + 1
+    lasting = [i for i in slower if steps[i:].min() > _INTERVAL_CHANGE * steps[i - 1]]
+    if not lasting:
+        return readings, ()
+    at = int(lasting[0])
+    flag = Flag(
+        "method-changed",
+        f"sampling goes from {steps[at - 1]:g} s to {steps[at]:g} s after line "
+        f"{int(readings.line[at])} ({readings.time_s[at]:g} s): the {len(readings) - at - 1} "
+        "readings after it are of another method and were not fitted",
+    )
+    return readings.where(slice(0, at + 1)), (flag,)
+
+
+def _enough(chosen: Readings, config: ViscosityConfig, rule: str) -> None:
+    if len(chosen) < config.min_readings:
+        raise FitRefused(
+            f"{len(chosen)} readings are left ({rule}), and a law needs {config.min_readings}; "
+            "measure longer or more often, within the torque window",
+            {"readings": len(chosen), "readings_needed": config.min_readings},
+        )
+
+
+def combined(windows: Sequence[Windowed]) -> Readings:
+    """Put the readings of several runs behind each other."""
+    if len(windows) == 1:
+        return windows[0].readings
+    first = windows[0].readings
+    return replace(
+        first,
+        **{
+            name: np.concatenate([getattr(w.readings, name) for w in windows])
+            for name in first.columns
+        },
+    )
+
+
+def common_range(ranges: Sequence[tuple[float, float]]) -> tuple[float, float]:
+    """Give the times that all ranges have in common `[s]`.
+
+    Raises
+    ------
+    FitRefused : there are none
+    """
+    low, high = max(r[0] for r in ranges), min(r[1] for r in ranges)
+    if not low < high:
+        raise FitRefused(
+            f"the runs have no time in common: one begins at {low:g} s, another ends at {high:g} s"
+        )
+    return low, high
