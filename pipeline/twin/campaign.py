@@ -17,6 +17,7 @@ from pipeline.twin.part import SYNTHETIC, Part
 from pipeline.twin.permittivity import permittivity_part
 from pipeline.twin.quirks import Quirk
 from pipeline.twin.tension import tension_part
+from pipeline.twin.viscosity import viscosity_part
 from pipeline.twin.writers import manifest
 
 NAME = "sylgard-2022-twin"
@@ -32,6 +33,10 @@ PARTS: tuple[Callable[[int], Part], ...] = (
 
 _CAMPAIGN = """\
 title = "Simulated characterisation of the Sylgard compositions of Sikulskyi et al. 2022"
+PARTS: tuple[Callable[[int], Part], ...] = (compression_part, tension_part, viscosity_part)
+
+_CAMPAIGN = """\
+title = "Simulated compression, tension and viscosity of eight Sylgard compositions"
 laboratory = "none: simulated by deamat's twin"
 licence = "CC BY 4.0"
 source = "simulated about the properties that Sikulskyi et al. 2022 print (Front. Robot. AI \

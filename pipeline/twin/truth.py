@@ -7,11 +7,16 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 
+import numpy as np
+from numpy.polynomial.polynomial import polyval
+
 from pipeline.core.errors import MissingProperty
 from pipeline.core.properties import REFERENCE_AGE
+from pipeline.core.records import FloatArray
 from pipeline.core.units import si_factor, to_si
 
 AGED = "2 months"
+SECONDS_PER_HOUR = 3600.0
 
 # key in truth.toml -> (property key, unit as printed, age)
 _KEYS = {
@@ -77,3 +82,46 @@ def true_value(key: str, material: str, age: str = REFERENCE_AGE) -> TrueValue:
 def materials() -> tuple[str, ...]:
     """List the materials of the table, in its order."""
     return tuple(dict.fromkeys(entry.material for entry in truth_table()))
+
+
+@dataclass(frozen=True, slots=True)
+class TrueViscosity:
+    r"""$\mu(t, q) = K(t)\, q^{n(t) - 1}$ with t in hours since mixing; n = 1 if `index` is empty.
+
+    Parameters
+    ----------
+    rotor : with which the material was measured
+    consistency : coefficients of K, lowest order first `[Pa.s^n / h^k]`
+    index : coefficients of n, lowest order first `[1 / h^k]`
+    """
+
+    material: str
+    rotor: int
+    consistency: tuple[float, ...]
+    index: tuple[float, ...]
+
+    def __call__(self, time_s: FloatArray, rate_per_s: FloatArray) -> FloatArray:
+        """Viscosity at times and nominal shear rates, shape (n,) each `[Pa.s]`."""
+        hours = np.asarray(time_s) / SECONDS_PER_HOUR
+        k = polyval(hours, self.consistency)
+        if not self.index:
+            return np.asarray(k)
+        return np.asarray(k * rate_per_s ** (polyval(hours, self.index) - 1.0))
+
+
+@cache
+def true_viscosities() -> dict[str, TrueViscosity]:
+    """Read the laws of viscosity, by material.
+
+    Source: Sikulskyi et al. 2022, Front. Robot. AI 9:1034914, Table 2 (CC BY).
+    """
+    document = tomllib.loads((files("pipeline.twin") / "truth.toml").read_text("utf-8"))
+    return {
+        material: TrueViscosity(
+            material,
+            said["rotor"],
+            tuple(said["coefficients_low_to_high"]),
+            tuple(said["index_low_to_high"] if "index_low_to_high" in said else ()),
+        )
+        for material, said in document["viscosity"].items()
+    }

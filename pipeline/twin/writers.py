@@ -121,6 +121,50 @@ def lcr_csv(
     rows = zip(frequency_Hz.tolist(), capacitance_F.tolist(), loss_tangent.tolist(), strict=True)
     body = [f"{f:.6g},{c:.6e},{d:.6f}" for f, c, d in rows]
     return _lines([f"# {remark}", "frequency_Hz,Cp_F,D", *body], "\n")
+def ndj8s_log(
+    remarks: Iterable[str],
+    stamps: Iterable[str],
+    readings: Iterable[tuple[int, float, float | None, float]],
+    temperatures_C: Iterable[float | None],
+) -> bytes:
+    """Write the serial lines of an NDJ-8S as a PC stamps them: `EEEE` where it was over range.
+
+    Parameters
+    ----------
+    readings : rotor, speed in rpm, viscosity in Pa.s (None: over range) and torque (part of full)
+    temperatures_C : None where there was no probe
+    """
+    lines = [f"# {remark}" for remark in remarks]
+    for stamp, (rotor, speed, viscosity, torque), celsius in zip(
+        stamps, readings, temperatures_C, strict=True
+    ):
+        setting = f"{stamp}\t{rotor}#{speed:g} RPM"
+        if viscosity is None:
+            lines.append(f"{setting}  EEEE")
+            continue
+        probe = "-.-" if celsius is None else f"{celsius:.1f}"
+        lines.append(f"{setting} {1e3 * viscosity:7.0f} {100 * torque:5.1f} {probe:>5}")
+    return _lines(lines, "\n")
+
+
+def viscometer_csv(
+    remarks: Iterable[str],
+    time_h: Iterable[float],
+    readings: Iterable[tuple[int, float, float | None, float]],
+    temperatures_C: Iterable[float | None],
+) -> bytes:
+    """Write the same readings as a laboratory's own CSV, in hours and Pa.s."""
+    lines = [f"# {remark}" for remark in remarks]
+    lines.append("time_h,rotor,speed_rpm,viscosity_Pas,torque_percent,temperature_C")
+    for hours, (rotor, speed, viscosity, torque), celsius in zip(
+        time_h, readings, temperatures_C, strict=True
+    ):
+        probe = "" if celsius is None else f"{celsius:.1f}"
+        shown = (
+            ("EEEE", "EEEE") if viscosity is None else (f"{viscosity:.3f}", f"{100 * torque:.1f}")
+        )
+        lines.append(f"{hours:.5f},{rotor},{speed:g},{shown[0]},{shown[1]},{probe}")
+    return _lines(lines, "\n")
 
 
 def register_csv(rows: Sequence[Mapping[str, str]]) -> bytes:

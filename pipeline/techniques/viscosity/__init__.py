@@ -56,7 +56,7 @@ def reduce(specimen: Specimen, recording: Recording | None, context: Context) ->
     try:
         if recording is None:
             raise FitRefused("the register names no data file for this run; fill in `file`")
-        if "shear_rate_per_s" in recording.columns and "time_s" not in recording.columns:
+        if "shear_rate_per_s" in recording.columns:
             values, curve = flow_curve_values(specimen, recording)
             return Measurement(specimen, values, (), curve, source)
         times = since_mixing_s(specimen, recording, context.timezone)
