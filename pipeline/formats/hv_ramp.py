@@ -3,7 +3,7 @@
 Usage
 -----
 Named `hv_ramp`; detected by a row of labels that holds a time and either a voltage or the channels
-of a DAQ (`time_s,ch1_V,ch2_V`).
+of a DAQ in volts (`time_s,ch1_V,ch2_V`).
 
 Format
 ------
@@ -72,8 +72,10 @@ def _layout(head: Sequence[str]) -> Layout | None:
     at = _names_line(head)
     pairs = [split_unit(cell) for cell in split(head[at], _delimiter(head[at]))]
     labels = tuple(label for label, _ in pairs)
+    declared = any(map(_CHANNEL_LINE.fullmatch, head[:at]))
     if "time" not in labels or not any(
-        label == "voltage" or _CHANNEL_LABEL.fullmatch(label) for label in labels
+        label == "voltage" or (_CHANNEL_LABEL.fullmatch(label) and (declared or unit == "V"))
+        for label, unit in pairs
     ):
         return None
     return Layout(at, at, labels, tuple(unit or "" for _, unit in pairs))

@@ -17,6 +17,7 @@ from tests.formats.samples import BY_NAME, SAMPLES, Sample
 from tests.formats.test_good_files import every_sample
 
 NAMES = ", ".join(form.name for form in FORMATS)
+NAMES = "bluehill, hv_ramp, mark10, mts, nexygen, phantom, soro, zwick"
 
 
 def refused(data: bytes) -> str:
@@ -76,6 +77,9 @@ def test_two_formats_that_match_are_an_error(monkeypatch: pytest.MonkeyPatch) ->
         "Wavelength (nm)\tAbsorbance\n400\t0.1\n",  # a spectrometer's
         "2theta;counts\n10.0;512\n",  # a diffractometer's
         "date,room,celsius\n2022-03-01,lab,21.5\n",  # a thermometer's
+        "Depth (nm)\tLoad (uN)\tTime (s)\n-1.5\t0.2\t0.1\n",  # an indenter's
+        "Point;Shear Rate (1/s);Viscosity (mPa.s)\n1;0.1;500\n",  # a rheometer's
+        "time_s,ch1_C,ch2_C\n0.0,0.1,0.2\n",  # a logger's
     ],
 )
 def test_other_instruments_are_left_alone(text: str) -> None:
