@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +18,9 @@ from pipeline.core.quantity import Contribution, Quantity
 FloatArray = NDArray[np.float64]
 Condition = str | float | tuple[float, float]
 Detail = float | int | str
+
+# What the value of a record is: an estimate, or only a limit of what was seen to hold.
+Bound = Literal["exact", "interval", "lower"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,8 +182,17 @@ class PropertyRecord:
     Parameters
     ----------
     sd : standard deviation between specimens `[unit]`; None for one specimen
-    ci95 : 95 % confidence interval `[unit]`
+    ci95 : 95 % confidence interval `[unit]`; where the value is a limit, the interval within which
+        the truth was seen to lie
     budget : contributions to the standard uncertainty of `quantity`
+    bound : "exact" for an estimate; "interval" where `quantity` is the lower end of `ci95`;
+        "lower" where it is all that is known and the truth may be any larger (right-censored):
+        such a value is written `>= 12 h`, never `12 h`
+
+    Raises
+    ------
+    OutOfRange : a limit that is not the lower end of its interval, or an open interval that is not
+        said to be a lower bound
     """
 
     key: str
@@ -194,6 +208,17 @@ class PropertyRecord:
     origins: tuple[Origin, ...]
     flags: tuple[Flag, ...] = ()
     diagnostics: Mapping[str, Detail] = field(default_factory=dict)
+    bound: Bound = "exact"
+
+    def __post_init__(self) -> None:
+        if self.bound == "exact":
+            return
+        low, high = self.ci95
+        if low != self.quantity.value or (self.bound == "lower") != math.isinf(high):
+            raise OutOfRange(
+                f"{self.key} of {self.material}: {self.quantity.value:g} {self.quantity.unit} "
+                f"cannot be its {self.bound} bound with the interval from {low:g} to {high:g}"
+            )
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,5 +1,7 @@
 """Registers: `specimens.csv`, one row per specimen, units in the header.
 
+A technique whose register holds one row per observation declares another `RegisterForm`.
+
 A column whose name ends in a known unit is a number (`diameter_mm` becomes `diameter_m`), and its
 `u_` twin is its standard uncertainty; the closed list of text columns is kept as text; any other
 column is a note. A column that starts like a quantity but ends in no known unit is an error.
@@ -13,7 +15,7 @@ import io
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from pipeline.core.errors import RawFileError
 from pipeline.core.instruments import Gauge
@@ -30,8 +32,33 @@ _STEMS = (
     "diameter", "height", "width", "thickness", "gauge_length", "speed", "temperature", "humidity",
     "micrometer_force", "anvil_diameter", "plate_length", "plate_width", "electrode_area", "rate",
     "breakdown_voltage", "breakdown_field", "tip_radius", "bed_temperature", "time",
+    "breakdown_voltage", "breakdown_field", "mass", "tip_radius", "peak_load", "bed_temperature",
+    "time",
 )  # fmt: skip
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+
+
+@dataclass(frozen=True, slots=True)
+class RegisterForm:
+    """Which register a technique reads, and what its rows are.
+
+    Parameters
+    ----------
+    file : its name in the technique's folder, one of `REGISTER_FILES`
+    text : text columns that every row must fill
+    identity : columns (a text column, or a number by its SI name) whose cells name a row
+    conditions : number by its SI name (`bed_temperature_K`) to the condition key that it gives
+    whole : the rows hang together, so that one bad row spoils all of them
+    """
+
+    file: str = REGISTER_FILE
+    text: tuple[str, ...] = ("specimen", "material")
+    identity: tuple[str, ...] = ("specimen",)
+    conditions: Mapping[str, str] = field(default_factory=dict)
+    whole: bool = False
+
+
+SPECIMENS = RegisterForm()
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,18 +88,21 @@ def read_register(
     technique: str,
     required: Sequence[str],
     gauges: Mapping[str, Gauge],
+    form: RegisterForm = SPECIMENS,
 ) -> Register:
     """Read a register's bytes into specimens.
 
     Parameters
     ----------
-    path : relative to `raw/`: `<campaign>/<technique>/specimens.csv`
+    path : relative to `raw/`: `<campaign>/<technique>/<form.file>`
     required : SI names of the columns that every row must fill (`diameter_m`)
     gauges : SI name without unit (`diameter`) to the gauge that read it
+    form : what the technique declares of its register
 
     Raises
     ------
-    RawFileError : the header itself is unusable (no `specimen` column, unknown unit, ...)
+    RawFileError : the header itself is unusable (no `specimen` column, unknown unit, ...), or a
+        row is bad in a register whose rows hang together
     """
     try:
         text = data.decode("utf-8-sig")
@@ -82,7 +112,7 @@ def read_register(
     header = [h.strip() for h in next(rows, [])]
     if not header:
         raise RawFileError(path, "an empty register")
-    columns = _columns(header, path, required)
+    columns = _columns(header, path, required, form)
     specimens: list[Specimen] = []
     errors: list[tuple[str | None, RawFileError]] = []
     seen: dict[str, int] = {}
@@ -92,26 +122,28 @@ def read_register(
             continue
         try:
             specimen = _specimen(
-                row, line, header, columns, path, campaign, technique, required, gauges
+                row, line, header, columns, path, campaign, technique, required, gauges, form
             )
+            if specimen.id in seen:
+                reason = f"the specimen stands in line {seen[specimen.id]} already"
+                raise RawFileError(path, reason, line, 1, specimen.id)
         except RawFileError as error:
+            if form.whole:
+                raise
             errors.append((_named_file(row, header, path), error))
-            continue
-        if specimen.id in seen:
-            reason = f"the specimen stands in line {seen[specimen.id]} already"
-            errors.append((specimen.file, RawFileError(path, reason, line, 1, specimen.id)))
             continue
         seen[specimen.id] = line
         specimens.append(specimen)
     return Register(tuple(specimens), tuple(errors))
 
 
-def _columns(header: list[str], path: str, required: Sequence[str]) -> dict[str, _Column]:
-    for name in ("specimen", "material"):
+def _columns(
+    header: list[str], path: str, required: Sequence[str], form: RegisterForm
+) -> dict[str, _Column]:
+    for name in form.text:
         if name not in header:
-            raise RawFileError(
-                path, f"no column {name!r}", line=1, mend="every register names both"
-            )
+            mend = f"every row of this register says {' and '.join(form.text)}"
+            raise RawFileError(path, f"no column {name!r}", line=1, mend=mend)
     for name in header:
         if header.count(name) > 1:
             raise RawFileError(path, "a column stands twice", 1, header.index(name) + 1, name)
@@ -169,6 +201,7 @@ def _specimen(
     technique: str,
     required: Sequence[str],
     gauges: Mapping[str, Gauge],
+    form: RegisterForm,
 ) -> Specimen:
     if len(row) != len(header):
         raise RawFileError(
@@ -185,12 +218,13 @@ def _specimen(
                 raise RawFileError(path, "must not be empty", line, column.index + 1, "")
             continue
         value = column.factor * _number(cell, path, line, column) + column.offset
-        if name in required and value <= 0:
+        # a time counts from an event, so zero is one; a length of zero is a slip
+        if name in required and (value < 0 or (value == 0 and column.unit != "s")):
             raise RawFileError(path, "must be positive", line, column.index + 1, cell)
         numbers[name] = _with_uncertainty(name, value, column, columns, cells, path, line, gauges)
     numeric = {c.header for c in columns.values()}
     taken = numeric | {"specimen", "material", "file", "format", *_CONDITIONS}
-    for name in ("specimen", "material"):
+    for name in form.text:
         if not cells[name]:
             raise RawFileError(path, f"no {name}", line, header.index(name) + 1, "")
     folder = path.rpartition("/")[0]
@@ -201,8 +235,10 @@ def _specimen(
             header.index("file") + 1, file,
         )  # fmt: skip
     conditions: dict[str, Condition] = {k: cells[k] for k in _CONDITIONS if cells.get(k)}
+    conditions |= {key: numbers[k].value for k, key in form.conditions.items() if k in numbers}
+    written = {name: column.header for name, column in columns.items()}
     return Specimen(
-        id=cells["specimen"],
+        id=" ".join(cell for k in form.identity if (cell := cells.get(written.get(k, k)))),
         material=cells["material"],
         campaign=campaign,
         technique=technique,

@@ -11,6 +11,7 @@ from pydantic import BaseModel
 from pipeline.core.instruments import Machine
 from pipeline.core.quantity import Quantity
 from pipeline.core.records import Measurement, Recording, Specimen, Summary
+from pipeline.core.register import SPECIMENS, RegisterForm
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +46,7 @@ class Technique:
     reduce : one specimen's recording to a measurement; a refused value is a `Refusal` in it
     summarise : all measurements of one material under one set of conditions to a summary
     figure : draws a material's measurements into the given axes; None for a technique without one
+    register : which register it reads and what a row of it is; one row per specimen by default
     """
 
     key: str
@@ -57,3 +59,4 @@ class Technique:
     reduce: Callable[[Specimen, Recording | None, Context], Measurement]
     summarise: Callable[[Sequence[Measurement], Context], Summary]
     figure: Callable[[Any, Sequence[Measurement], Summary], None] | None = None
+    register: RegisterForm = SPECIMENS

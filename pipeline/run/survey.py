@@ -15,7 +15,7 @@ from pipeline.core.errors import RawFileError
 from pipeline.core.ledger import FileEntry, Role
 from pipeline.core.manifest import Difference, compare, parse_manifest
 from pipeline.core.records import Specimen
-from pipeline.core.register import REGISTER_FILE, REGISTER_FILES, read_register
+from pipeline.core.register import REGISTER_FILES, read_register
 from pipeline.core.technique import Technique
 from pipeline.formats.documentation import stated_units
 
@@ -80,7 +80,7 @@ def survey(
     for path, entry in sorted(result.entries.items()):
         if entry.role == "register" and entry.status != "excluded":
             _register(path, folder, result, techniques, config)
-    _unnamed(result, folder)
+    _unnamed(result, folder, techniques)
     return result
 
 
@@ -165,10 +165,16 @@ def _register(
                     result.entries[file], role=role, status="refused", reason=reason
                 )
         return
+    form = techniques[name].register
     try:
+        if path != f"{folder.name}/{name}/{form.file}":
+            raise RawFileError(
+                path, f"the register of {name} is called {form.file}", mend="give it that name"
+            )
         register = read_register(
-            data, path, folder.name, name, techniques[name].required, config.instruments.gauges
-        )
+            data, path, folder.name, name, techniques[name].required, config.instruments.gauges,
+            form,
+        )  # fmt: skip
     except RawFileError as error:
         _blame(result, error)
         for file in _files_named(data, path):
@@ -235,13 +241,13 @@ def _files_named(data: bytes, path: str) -> list[str]:
     return [f"{folder}/{row[at].strip()}" for row in rows[1:] if len(row) > at and row[at].strip()]
 
 
-def _unnamed(result: Survey, folder: Path) -> None:
+def _unnamed(result: Survey, folder: Path, techniques: Mapping[str, Technique]) -> None:
     """A data file that no register names is rejected: nobody can say what it belongs to."""
     for path, entry in result.entries.items():
         if entry.role != "unnamed" or entry.status == "excluded":
             continue
         technique = path.split("/")[1]
-        register = f"{folder.name}/{technique}/{REGISTER_FILE}"
+        register = f"{folder.name}/{technique}/{techniques[technique].register.file}"
         reason = (
             f"{register} does not name it; add a row or an exclusion"
             if register in result.entries

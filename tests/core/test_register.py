@@ -6,7 +6,7 @@ import pytest
 
 from pipeline.core.errors import RawFileError
 from pipeline.core.instruments import Gauge
-from pipeline.core.register import Register, read_register
+from pipeline.core.register import Register, RegisterForm, read_register
 
 _PATH = "demo/compression/specimens.csv"
 _GOOD = "specimen,material,file,diameter_mm,u_diameter_mm,height_mm,age,cup\na,m,f/a.csv,28,0.02,12,after cure,150 ml\n"
@@ -97,3 +97,49 @@ def test_either_letter_mu_is_a_unit(mu: str) -> None:
     text = f"specimen,material,thickness_{mu}m\na,m,300\n"
     register = read_register(text.encode(), "c/t/specimens.csv", "c", "t", ("thickness_m",), {})
     assert register.specimens[0].numbers["thickness_m"].value == pytest.approx(300e-6)
+_LINES = RegisterForm(
+    file="observations.csv",
+    text=("material", "defect"),
+    identity=("material", "batch", "bed_temperature_K", "time_s", "line"),
+    conditions={"bed_temperature_K": "temperature_K"},
+    whole=True,
+)
+_OBSERVED = "material,batch,bed_temperature_C,time_h,line,defect,limit\n"
+
+
+def _observations(rows: str) -> Register:
+    return read_register(
+        (_OBSERVED + rows).encode(), "demo/handling/observations.csv", "demo", "handling",
+        ("time_s",), {}, _LINES,
+    )  # fmt: skip
+
+
+def test_a_row_may_be_an_observation_named_by_its_cells() -> None:
+    heated, plain = _observations("m,a,50,0,1,none,\nm,a,,1.5,3,gap,\n").specimens
+    assert (heated.id, plain.id) == ("m a 50 0 1", "m a 1.5 3")
+    assert heated.conditions == {"temperature_K": 323.15}
+    assert plain.conditions == {}
+    assert heated.numbers["time_s"].value == 0.0
+    assert plain.numbers["time_s"].value == 5400.0
+    assert heated.notes == {"batch": "a", "line": "1", "defect": "none"}
+
+
+@pytest.mark.parametrize(
+    ("row", "message"),
+    [
+        (
+            "m,a,22,1o,2,none,",
+            "line 3, column 4: not a number (found '1o'); write it with a decimal point",
+        ),
+        ("m,a,22,-1,2,none,", "line 3, column 4: must be positive (found '-1')"),
+        ("m,a,22,1,2,,", "line 3, column 6: no defect (found '')"),
+        (
+            "m,a,22,0.5,1,gap,",
+            "line 3, column 1: the specimen stands in line 2 already (found 'm a 22 0.5 1')",
+        ),
+    ],
+)
+def test_one_bad_row_spoils_a_register_whose_rows_hang_together(row: str, message: str) -> None:
+    with pytest.raises(RawFileError) as caught:
+        _observations(f"m,a,22,0.5,1,none,\n{row}\nm,a,22,2,4,gap,\n")
+    assert str(caught.value) == f"demo/handling/observations.csv, {message}"
