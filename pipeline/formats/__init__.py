@@ -23,6 +23,7 @@ FORMATS: tuple[Format, ...] = tuple(
         "lcr6000",
         "lcr_csv",
         "flow_tab",
+        "hysitron",
         "mark10",
         "mts",
         "ndj8s",

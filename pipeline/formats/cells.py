@@ -29,11 +29,13 @@ class Dialect:
     delimiter : one of comma, semicolon, tab
     decimal : point or comma; the other one inside a number is then an error
     quoted : numbers may stand in double quotes and then carry thousands commas
+    segmented : blank lines part the rows into segments of one run
     """
 
     delimiter: str
     decimal: str = "."
     quoted: bool = False
+    segmented: bool = False
 
 
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
@@ -99,10 +101,11 @@ def read_cells(
     ------
     RawFileError : naming line, column, value, reason and mend of the first cell that is no number
     """
-    lines = text.split("\n")
+    lines = list(enumerate(text.split("\n"), start=first_line))
+    if dialect.segmented:
+        lines = [(at, line) for at, line in lines if line.strip()]
     table = np.empty((len(lines), columns))
-    for row, line in enumerate(lines):
-        at = first_line + row
+    for row, (at, line) in enumerate(lines):
         fields = _split(file, line, at, columns, dialect, last=row == len(lines) - 1)
         for column, field in enumerate(fields):
             value = _value(field, dialect)
@@ -113,7 +116,7 @@ def read_cells(
         raise RawFileError(
             file.path,
             "no line end after the last row, so its last number may be cut",
-            line=first_line + len(lines) - 1,
+            line=lines[-1][0],
             column=columns,
             value=fields[-1],
             mend="export the file again; if this exporter never writes a final line end, "

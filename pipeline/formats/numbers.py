@@ -9,6 +9,8 @@ by line and column. Both give the double nearest to the text, as Python's `float
 from __future__ import annotations
 
 from functools import cache
+import re
+from collections.abc import Sequence
 
 import numpy as np
 import simdjson
@@ -20,6 +22,7 @@ from pipeline.formats.quoted import unquote
 from pipeline.formats.rawfile import RawFile
 
 _DIGITS = b"0123456789+-eE "
+_BLANK_LINES = re.compile(rb"\n(?:[ \t]*\n)+")
 _CHUNK = 1 << 20  # bytes parsed at a time: the parser's workspace is some ten times its text
 # One parser for all files: the fresh pages of a new one cost as much as the parsing. It refuses to
 # parse while something that it parsed is still referred to.
@@ -59,6 +62,19 @@ def read_block(file: RawFile, first: int, columns: int, dialect: Dialect) -> Flo
             mend="export the file again",
         )
     return read_cells(file, text, first + 1, columns, dialect, ended=ended)
+    rows = _BLANK_LINES.sub(b"\n", block) if dialect.segmented else block
+    table = parse(rows, columns, dialect) if ended else None
+    if table is None:
+        table = read_cells(file, block.decode(), first + 1, columns, dialect, ended=ended)
+    return table
+
+
+def row_lines(file: RawFile, first: int, rows: int, dialect: Dialect) -> Sequence[int]:
+    """Give the line of every row that `read_block` read, counted from 1."""
+    if not dialect.segmented:
+        return range(first + 1, first + 1 + rows)
+    lines = file.body[file.offset(first) :].split(b"\n")
+    return [at for at, line in enumerate(lines, start=first + 1) if line.strip()]
 
 
 def parse(block: bytes, columns: int, dialect: Dialect) -> FloatArray | None:

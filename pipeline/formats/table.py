@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -13,7 +13,7 @@ from pipeline.core.units import UnknownUnit, si_factor
 from pipeline.formats.cells import Dialect, looks_numeric
 from pipeline.formats.documentation import contradictions
 from pipeline.formats.header import Layout
-from pipeline.formats.numbers import read_block
+from pipeline.formats.numbers import read_block, row_lines
 from pipeline.formats.quantities import STANDARD, assign, meaning
 from pipeline.formats.rawfile import RawFile
 
@@ -79,6 +79,9 @@ def read_table(
     first = _first_row(file, layout)
     rows = read_block(file, first, len(names), reader.dialect)
     flags += _kind_flags(layout, si_units) + row_flags(rows, names, first + 1)
+    rows = read_block(file, layout.rows, len(names), reader.dialect)
+    lines = row_lines(file, layout.rows, len(rows), reader.dialect)
+    flags += _kind_flags(layout, si_units) + row_flags(rows, names, lines)
     columns = {
         name: _to_si(rows[:, column], factor, offset)
         for column, (name, (_, factor, offset)) in enumerate(zip(names, conversions, strict=True))
@@ -88,6 +91,8 @@ def read_table(
         sha256=file.sha256,
         first_line=first + 1,
         last_line=first + len(rows),
+        first_line=lines[0],
+        last_line=lines[-1],
         encoding=file.encoding,
         reader=reader.name,
         reader_version=reader.version,
@@ -127,24 +132,25 @@ def _refuse_twins(file: RawFile, layout: Layout, names: tuple[str, ...]) -> None
         )
 
 
-def row_flags(rows: FloatArray, names: tuple[str, ...], first_line: int) -> list[Flag]:
+def row_flags(rows: FloatArray, names: tuple[str, ...], lines: Sequence[int]) -> list[Flag]:
     """Notice rows that repeat the row before them, and time that runs backwards.
 
     Parameters
     ----------
     rows : shape (rows, columns), units as written
-    first_line : of the first row, counted from 1
+    lines : line of each row, counted from 1
     """
     lead = names.index("time_s") if "time_s" in names else 0
     if (rows[1:, lead] > rows[:-1, lead]).all():
         return []  # a column that only rises repeats no row: nearly every recording
     flags = _repeats(rows, lead, first_line)
+    flags = _repeats(rows, lead, lines)
     if "time_s" in names:
-        flags += _steps_back(rows[:, lead], first_line)
+        flags += _steps_back(rows[:, lead], lines)
     return flags
 
 
-def _repeats(rows: FloatArray, lead: int, first_line: int) -> list[Flag]:
+def _repeats(rows: FloatArray, lead: int, lines: Sequence[int]) -> list[Flag]:
     same = rows[1:, lead] == rows[:-1, lead]  # one column first: it rules out nearly all rows
     if not same.any():
         return []
@@ -153,18 +159,18 @@ def _repeats(rows: FloatArray, lead: int, first_line: int) -> list[Flag]:
         return []
     detail = (
         f"rows equal to the row before in every column: {repeats.size}, the first in line "
-        f"{repeats[0] + 1 + first_line}; none was dropped"
+        f"{lines[repeats[0] + 1]}; none was dropped"
     )
     return [Flag("identical-rows", detail)]
 
 
-def _steps_back(time: FloatArray, first_line: int) -> list[Flag]:
+def _steps_back(time: FloatArray, lines: Sequence[int]) -> list[Flag]:
     back = np.flatnonzero(time[1:] < time[:-1])
     if not back.size:
         return []
     row = int(back[0])
     detail = (
-        f"steps back in time: {back.size}, the first in line {row + 1 + first_line} "
+        f"steps back in time: {back.size}, the first in line {lines[row + 1]} "
         f"(from {time[row]:g} to {time[row + 1]:g} as written)"
     )
     return [Flag("time-not-increasing", detail)]

@@ -18,6 +18,9 @@ TRAVEL_MM = (0.0, 0.00725, 0.02801, 0.04634, 0.0629, 0.0801, 0.09689, 0.11362)
 FORCE = (0.00061, 0.02189, -0.02731, 0.04411, 0.08023, 0.11927, 0.15888, 0.20418)
 BIG = (0.00061, 12.3, 999.99, 1000.00001, -2345.6, 12345.0, 242370.29658, 1234567.8)
 CURRENT = (-0.0002, 0.0001, 0.0003, -0.0004, 0.0005, 0.0001, 9.3, 8.75)
+DEPTH_NM = (-49.207661, -20.5, -0.720947, 1.810255, 6.311193, 20.2318, 19.75, 0.5)
+LOAD_UN = (0.236883, -0.2213, 0.996201, 11.3033, 29.461702, 143.9746, 100.25, -0.865001)
+SIGNAL_V = (-0.00185, 0.481918, 0.006321, 0.447365, 0.002201, 0.515, 0.573401, -0.0033)
 STRAIN = (-0.0, -0.000242, -0.000934, -0.001545, -0.002097, -0.00267, -0.00323, -0.003787)
 STRESS_KPA = (
     *(-0.000311, -0.011148, -0.013909, -0.022465),
@@ -61,6 +64,7 @@ class Sample:
     quoted: bool = False
     encoding: str = "utf-8"
     newline: str = "\n"
+    counted: bool = False  # the header states the number of rows; blank lines part segments
     flags: tuple[str, ...] = ()
     metadata: dict[str, str] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)
@@ -97,7 +101,7 @@ class Sample:
         cells = self.cells(row)
         cells[column] = text
         lines[self.first - 1 + row] = self.delimiter.join(cells)
-        return self.raw(lines)
+        return self.raw(lines, encoding="utf-8" if self.encoding == "latin-1" else "")
 
     def cells(self, row: int) -> list[str]:
         line = self.lines[self.first - 1 + row]
@@ -220,6 +224,27 @@ SAMPLES = (
         newline="\r\n",
         metadata={"Test Run Name": "synthetic data, made for tests"},
         units={"Load": "kN"},
+    ),
+    Sample(
+        "hysitron",
+        "hysitron.txt",
+        {
+            "depth_m": (DEPTH_NM, 1e-9),
+            "force_N": (LOAD_UN, 1e-6),
+            "time_s": (TIME, 1.0),
+            "depth_signal_V": (SIGNAL_V, 1.0),
+            "load_signal_V": (SIGNAL_V[::-1], 1.0),
+        },
+        first=5,
+        delimiter="\t",
+        encoding="latin-1",
+        counted=True,
+        metadata={
+            "timestamp": "Mon Jan 10 09:00:00 2022",
+            "line 2": "synthetic data, made for tests",
+            "Number of Points": "8",
+        },
+        units={"Depth": "nm", "Load": "µN", "Time": "s", "Depth signal": "V"},
     ),
     Sample(
         "zwick",

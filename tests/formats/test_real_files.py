@@ -83,7 +83,7 @@ def test_all_seven_soro_files_read_as_numpy_and_pandas_read_them(shared: Path) -
 
 @pytest.mark.shared
 def test_files_of_other_instruments_are_not_claimed(shared: Path) -> None:
-    others = ("flow", "dielectric", "nanoindentation", "instrument_lines")
+    others = ("flow", "dielectric", "instrument_lines")
     paths = [
         path
         for folder in others
