@@ -110,6 +110,7 @@ class Machine(Declared):
     )
     torque_noise: float = Field(
         default=0.003, gt=0, description="viscometer, part of full scale, of a single reading"
+    )
     max_travel_m: float | None = Field(
         default=None, gt=0, description="reading at which the displacement ends, where it matters"
     )

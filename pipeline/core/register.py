@@ -237,7 +237,7 @@ def _specimen(
     conditions: dict[str, Condition] = {k: cells[k] for k in _CONDITIONS if cells.get(k)}
     conditions |= {key: numbers[k].value for k, key in form.conditions.items() if k in numbers}
     written = {name: column.header for name, column in columns.items()}
-    named = [written[name] if name in written else name for name in form.identity]
+    named = [written.get(name, name) for name in form.identity]
     return Specimen(
         id=" ".join(cells[column] for column in named if cells.get(column)),
         material=cells["material"],

@@ -25,18 +25,18 @@ from pipeline.core.records import Recording
 from pipeline.formats.cells import Dialect
 from pipeline.formats.format import Format
 from pipeline.formats.header import Layout, two_row_layout, units_row
-from pipeline.formats.rawfile import RawFile
+from pipeline.formats.rawfile import Head, RawFile
 from pipeline.formats.table import Reader, read_table, required
 
 _READER = Reader("antonpaar", 1, Dialect(";", ","))
 
 
-def _layout(head: list[str]) -> Layout | None:
+def _layout(head: Head) -> Layout | None:
     units = units_row([line or " " for line in head], ";")
     return None if units is None else two_row_layout(head, ";", units - 1)
 
 
-def _recognises(head: list[str]) -> bool:
+def _recognises(head: Head) -> bool:
     layout = _layout(head)
     return layout is not None and layout.has("shear_rate_per_s")
 

@@ -153,7 +153,11 @@ def read_sweep(
         ended=ended,
     )
     over = _over_range(lines, marks, sweep, rows)
-    flags = row_flags(rows, tuple(c.name for c in sweep.columns), sweep.first + 1)
+    flags = row_flags(
+        rows,
+        tuple(c.name for c in sweep.columns),
+        range(sweep.first + 1, sweep.first + 1 + len(rows)),
+    )
     columns = {c.name: _factor(file, c, sweep) * rows[:, i] for i, c in enumerate(sweep.columns)}
     _positive(file, columns["frequency_Hz"], sweep.first + 1)
     if over.any():

@@ -42,9 +42,6 @@ def _layout(head: Head) -> Layout | None:
 
 def _recognises(head: Head) -> bool:
     layout = head.once(_layout)
-    if layout is None or "machine extension" in map(str.casefold, layout.labels):
-def _recognises(head: list[str]) -> bool:
-    layout = _layout(head)
     # without rows to show a decimal comma, labels alone tell the other tab-separated forms apart
     if layout is None or {"machine extension", "depth"} & {*map(str.casefold, layout.labels)}:
         return False

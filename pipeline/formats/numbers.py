@@ -8,9 +8,9 @@ by line and column. Both give the double nearest to the text, as Python's `float
 
 from __future__ import annotations
 
-from functools import cache
 import re
 from collections.abc import Sequence
+from functools import cache
 
 import numpy as np
 import simdjson
@@ -22,7 +22,7 @@ from pipeline.formats.quoted import unquote
 from pipeline.formats.rawfile import RawFile
 
 _DIGITS = b"0123456789+-eE "
-_BLANK_LINES = re.compile(rb"\n(?:[ \t]*\n)+")
+_BLANK_LINES = re.compile(rb"\n(?:[ \t]*\r?\n)+")
 _CHUNK = 1 << 20  # bytes parsed at a time: the parser's workspace is some ten times its text
 # One parser for all files: the fresh pages of a new one cost as much as the parsing. It refuses to
 # parse while something that it parsed is still referred to.
@@ -50,6 +50,8 @@ def read_block(file: RawFile, first: int, columns: int, dialect: Dialect) -> Flo
     ended = file.ends_open or block.endswith(b"\n")
     rows = block.rstrip(b" \r\n")
     lone_return = b"\r" in block[len(rows) :].replace(b"\r\n", b"\n")
+    if dialect.segmented:
+        rows = _BLANK_LINES.sub(b"\n", rows)
     table = parse(rows, columns, dialect) if rows and ended and not lone_return else None
     if table is not None:
         return table
@@ -62,11 +64,6 @@ def read_block(file: RawFile, first: int, columns: int, dialect: Dialect) -> Flo
             mend="export the file again",
         )
     return read_cells(file, text, first + 1, columns, dialect, ended=ended)
-    rows = _BLANK_LINES.sub(b"\n", block) if dialect.segmented else block
-    table = parse(rows, columns, dialect) if ended else None
-    if table is None:
-        table = read_cells(file, block.decode(), first + 1, columns, dialect, ended=ended)
-    return table
 
 
 def row_lines(file: RawFile, first: int, rows: int, dialect: Dialect) -> Sequence[int]:

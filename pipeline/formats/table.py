@@ -78,9 +78,7 @@ def read_table(
     _refuse_twins(file, layout, names)
     first = _first_row(file, layout)
     rows = read_block(file, first, len(names), reader.dialect)
-    flags += _kind_flags(layout, si_units) + row_flags(rows, names, first + 1)
-    rows = read_block(file, layout.rows, len(names), reader.dialect)
-    lines = row_lines(file, layout.rows, len(rows), reader.dialect)
+    lines = row_lines(file, first, len(rows), reader.dialect)
     flags += _kind_flags(layout, si_units) + row_flags(rows, names, lines)
     columns = {
         name: _to_si(rows[:, column], factor, offset)
@@ -89,8 +87,6 @@ def read_table(
     source = Source(
         path=file.path,
         sha256=file.sha256,
-        first_line=first + 1,
-        last_line=first + len(rows),
         first_line=lines[0],
         last_line=lines[-1],
         encoding=file.encoding,
@@ -143,7 +139,6 @@ def row_flags(rows: FloatArray, names: tuple[str, ...], lines: Sequence[int]) ->
     lead = names.index("time_s") if "time_s" in names else 0
     if (rows[1:, lead] > rows[:-1, lead]).all():
         return []  # a column that only rises repeats no row: nearly every recording
-    flags = _repeats(rows, lead, first_line)
     flags = _repeats(rows, lead, lines)
     if "time_s" in names:
         flags += _steps_back(rows[:, lead], lines)

@@ -1,8 +1,7 @@
 """The rooms: one module per technique, and the one list of them."""
 
 from pipeline.core.technique import Technique
-from pipeline.techniques import breakdown, compression, permittivity, tension
-from pipeline.techniques import compression, tension, viscosity
+from pipeline.techniques import breakdown, compression, permittivity, tension, viscosity
 
 TECHNIQUES: dict[str, Technique] = {
     "breakdown": breakdown.TECHNIQUE,

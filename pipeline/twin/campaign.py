@@ -29,14 +29,11 @@ PARTS: tuple[Callable[[int], Part], ...] = (
     tension_part,
     permittivity_part,
     breakdown_part,
+    viscosity_part,
 )
 
 _CAMPAIGN = """\
 title = "Simulated characterisation of the Sylgard compositions of Sikulskyi et al. 2022"
-PARTS: tuple[Callable[[int], Part], ...] = (compression_part, tension_part, viscosity_part)
-
-_CAMPAIGN = """\
-title = "Simulated compression, tension and viscosity of eight Sylgard compositions"
 laboratory = "none: simulated by deamat's twin"
 licence = "CC BY 4.0"
 source = "simulated about the properties that Sikulskyi et al. 2022 print (Front. Robot. AI \

@@ -46,7 +46,7 @@ class Calibration:
     caliper_m: float
     micrometer_m: float
     voltage: float
-    torque: float = 0.0
+    torque: float
 
 
 def stream(seed: int, *key: str) -> Generator:
@@ -72,6 +72,7 @@ def draw_calibration(seed: int, technique: str) -> Calibration:
         caliper_m=gauges.normal(0.0, CALIPER.u_calibration_m),
         micrometer_m=gauges.normal(0.0, MICROMETER.u_calibration_m),
         voltage=monitor.normal(0.0, MACHINE.u_voltage_calibration),
+        torque=0.0,
     )
 
 

@@ -29,6 +29,7 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 
 import numpy as np
+from numpy.typing import NDArray
 from numpy.random import Generator
 
 from pipeline.core.errors import MissingProperty
@@ -76,7 +77,7 @@ class SimulatedRun:
     speed_rpm: FloatArray
     viscosity_Pas: FloatArray
     torque: FloatArray
-    over: FloatArray
+    over: NDArray[np.bool_]
     factor: float
 
 
@@ -194,7 +195,7 @@ def viscosity_part(seed: int) -> Part:
             mixed_at += timedelta(days=1, minutes=7)
     contents[f"{TECHNIQUE}/specimens.csv"] = register_csv(rows)
     # no cell, crosshead or gauge has a part in it
-    calibration = Calibration(0.0, 0.0, 0.0, 0.0, torque=torque_error(seed))
+    calibration = Calibration(0.0, 0.0, 0.0, 0.0, 0.0, torque=torque_error(seed))
     return Part(TECHNIQUE, contents, _truth(), calibration, specimens)
 
 

@@ -121,6 +121,8 @@ def lcr_csv(
     rows = zip(frequency_Hz.tolist(), capacitance_F.tolist(), loss_tangent.tolist(), strict=True)
     body = [f"{f:.6g},{c:.6e},{d:.6f}" for f, c, d in rows]
     return _lines([f"# {remark}", "frequency_Hz,Cp_F,D", *body], "\n")
+
+
 def ndj8s_log(
     remarks: Iterable[str],
     stamps: Iterable[str],

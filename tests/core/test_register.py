@@ -97,6 +97,8 @@ def test_either_letter_mu_is_a_unit(mu: str) -> None:
     text = f"specimen,material,thickness_{mu}m\na,m,300\n"
     register = read_register(text.encode(), "c/t/specimens.csv", "c", "t", ("thickness_m",), {})
     assert register.specimens[0].numbers["thickness_m"].value == pytest.approx(300e-6)
+
+
 _LINES = RegisterForm(
     file="observations.csv",
     text=("material", "defect"),

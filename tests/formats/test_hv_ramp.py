@@ -28,9 +28,7 @@ def read(*lines: str) -> Recording:
         ("voltage_kV", "-0.5,-1.5", [-500.0, -1500.0]),
     ],
 )
-def test_a_plain_table_may_do_without_a_current(
-    label: str, cells: str, volts: list[float]
-) -> None:
+def test_a_plain_table_may_do_without_a_current(label: str, cells: str, volts: list[float]) -> None:
     first, second = cells.split(",")
     recording = read(f"time_s,{label}", f"0.0,{first}", f"0.5,{second}")
     assert list(recording.columns) == ["time_s", "voltage_V"]

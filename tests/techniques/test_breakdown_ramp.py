@@ -114,7 +114,10 @@ def test_noise_before_the_ramp_is_no_collapse() -> None:
 
 
 @given(
-    scale=st.floats(0.1, 3.0), step=st.floats(5.0, 60.0), n=st.integers(20, 90), dt=st.floats(0.1, 2)
+    scale=st.floats(0.1, 3.0),
+    step=st.floats(5.0, 60.0),
+    n=st.integers(20, 90),
+    dt=st.floats(0.1, 2),
 )
 def test_volts_and_seconds_only_scale(scale: float, step: float, n: int, dt: float) -> None:
     volts = ramp(0.0, 0.0, step=step, n=n)
