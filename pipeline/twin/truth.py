@@ -116,12 +116,10 @@ def true_viscosities() -> dict[str, TrueViscosity]:
     Source: Sikulskyi et al. 2022, Front. Robot. AI 9:1034914, Table 2 (CC BY).
     """
     document = tomllib.loads((files("pipeline.twin") / "truth.toml").read_text("utf-8"))
-    return {
-        material: TrueViscosity(
-            material,
-            said["rotor"],
-            tuple(said["coefficients_low_to_high"]),
-            tuple(said["index_low_to_high"] if "index_low_to_high" in said else ()),
-        )
-        for material, said in document["viscosity"].items()
-    }
+    found = {}
+    for material, said in document["viscosity"].items():
+        newtonian = "index_low_to_high" not in said
+        index = () if newtonian else tuple(said["index_low_to_high"])
+        consistency = tuple(said["coefficients_low_to_high"])
+        found[material] = TrueViscosity(material, said["rotor"], consistency, index)
+    return found

@@ -31,6 +31,7 @@ from datetime import datetime, timedelta
 import numpy as np
 from numpy.typing import NDArray
 from numpy.random import Generator
+from numpy.typing import NDArray
 
 from pipeline.core.errors import MissingProperty
 from pipeline.core.instruments import Machine
@@ -52,7 +53,7 @@ _FIRST_S, _LAST_S, _EVERY_S = 0.25 * SECONDS_PER_HOUR, 13.0 * SECONDS_PER_HOUR, 
 _NEXT_SPEED_S, _LATE_S = 40, 20
 _WARM_S, _WARM_PART = 0.75 * SECONDS_PER_HOUR, 0.15
 _SWEPT_RPM = tuple(speed for speed in SPEEDS_RPM if speed <= 6.0)
-_MIXED_AT = datetime(2022, 3, 1, 18, 30)
+_MIXED_AT = datetime.fromisoformat("2022-03-01T18:30:00")  # the campaign's own clock
 _PROBE_PERIOD = 5  # the probe is read at every reading but each fifth
 
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from pipeline.core.errors import FitRefused
 from pipeline.core.records import (
+    FloatArray,
     MeasuredValue,
     Measurement,
     Recording,
@@ -52,7 +53,7 @@ def reduce(specimen: Specimen, recording: Recording | None, context: Context) ->
     """
     config: ViscosityConfig = context.config
     source = None if recording is None else recording.source
-    curve = {}
+    curve: dict[str, FloatArray] = {}
     try:
         if recording is None:
             raise FitRefused("the register names no data file for this run; fill in `file`")

@@ -103,4 +103,4 @@ def _from_time_of_day(values: FloatArray, mixed: datetime) -> FloatArray:
             f"stamps without a date: the first is {first / 3600:.1f} h after mixing or "
             f"{(_DAY_S - first) / 3600:.1f} h before it; stamp with the date"
         )
-    return values - values[0] + first
+    return np.asarray(values - values[0] + first)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pipeline.core.errors import FitRefused
 from pipeline.core.properties import property_key
@@ -130,7 +131,7 @@ def flow_curve_values(
     lines = columns["line"] if "line" in columns else first + np.flatnonzero(chosen)
     rate, viscosity = columns["shear_rate_per_s"], columns["viscosity_Pas"]
     good = (rate > 0) & (viscosity > 0)
-    flags = ()
+    flags: tuple[Flag, ...] = ()
     if not good.all():
         bad = lines_text(lines[~good])
         flags = (Flag("not-positive", f"rate or viscosity of zero or less: lines {bad} left out"),)
@@ -181,20 +182,20 @@ def _value(
     )
 
 
-def _sample(specimen: Specimen, recording: Recording) -> FloatArray:
+def _sample(specimen: Specimen, recording: Recording) -> NDArray[np.bool_]:
     """Mask of the readings of the sample that the register names."""
     if "sample" not in recording.columns:
         return np.ones(len(recording.columns["shear_rate_per_s"]), dtype=bool)
     names = recording.metadata["samples"].split(SEPARATOR)
     index = recording.columns["sample"]
     if len(names) == 1:
-        return index == 0
+        return np.ones(len(index), dtype=bool)
     if specimen.notes.get("sample") not in names:
         raise FitRefused(
             f"the file holds {len(names)} samples; name one in the register's column `sample`: "
             f"{', '.join(names)}"
         )
-    return index == names.index(specimen.notes["sample"])
+    return np.asarray(index == names.index(specimen.notes["sample"]))
 
 
 def _one_temperature(columns: dict[str, FloatArray]) -> None:

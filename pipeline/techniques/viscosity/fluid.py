@@ -261,15 +261,15 @@ def _compared(law: TimeLaw, stages: Stages) -> TimeLaw:
     staged = stages.factor(times)[0] * rate ** (stages.index(times)[0] - 1.0)
     apart = float(np.max(np.abs(staged / surface - 1.0)))
     said = {**law.diagnostics, "two_stage_largest_difference": apart}
-    falls = np.flatnonzero(np.diff(surface) < 0)
     flags = law.flags
-    if falls.size:
+    drop = 1.0 - surface / np.maximum.accumulate(surface)
+    if drop.max() > 0:
+        at = int(np.argmax(drop))
         flags += (
             Flag(
                 "falls",
-                f"viscosity at {rate:.3g} 1/s falls between {times[falls[0]] / 3600:.3g} h and "
-                f"{times[falls[-1] + 1] / 3600:.3g} h, by {1 - surface.min() / surface[0]:.1%} "
-                "from the start at most",
+                f"viscosity at {rate:.3g} 1/s falls by up to {drop[at]:.2%}, at "
+                f"{times[at] / 3600:.3g} h: K and n are free, and only their product is measured",
             ),
         )
     return replace(law, diagnostics=said, flags=flags)

@@ -24,7 +24,7 @@ from pipeline.techniques.viscosity.window import Windowed, combined, common_rang
 
 # A law that predicts left-out readings worse than the best by more than this is flagged.
 _PREDICTS_WORSE = 1.1
-_GEL_TIMES = np.geomspace(1.02, 8.0, 24)  # over the last time: where to start looking for the gel
+_GEL_TIMES = np.geomspace(1.02, 8.0, 10)  # over the last time: where to start looking for the gel
 
 
 def fit_newtonian(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeLaw:

@@ -18,8 +18,6 @@ from pipeline.techniques.viscosity.time_law import TimeLaw
 from pipeline.techniques.viscosity.values import CONSISTENCY, INDEX, VISCOSITY
 from pipeline.techniques.viscosity.window import Windowed
 
-_ROUNDS = 3  # levels and law settle at once: both are nearly what they were after the first round
-
 
 def fit_law(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeLaw:
     """Fit a power-law fluid where speeds were swept and show one, else a Newtonian law.
@@ -46,15 +44,12 @@ def fit_runs(windows: Sequence[Windowed], config: ViscosityConfig) -> tuple[Time
     ------
     FitRefused : as in `fit_law`
     """
-    levels = np.ones(len(windows))
     law = fit_law(windows, config)
-    for _ in range(_ROUNDS if len(windows) > 1 else 0):
-        levels = levels * np.array(
-            [_level(law, _scaled(w, f)) for w, f in zip(windows, levels, strict=True)]
-        )
-        levels /= levels.mean()
-        law = fit_law([_scaled(w, f) for w, f in zip(windows, levels, strict=True)], config)
-    return law, levels
+    if len(windows) == 1:
+        return law, np.ones(1)
+    levels = np.array([_level(law, window) for window in windows])
+    levels /= levels.mean()
+    return fit_law([_scaled(w, f) for w, f in zip(windows, levels, strict=True)], config), levels
 
 
 def _scaled(window: Windowed, level: float) -> Windowed:

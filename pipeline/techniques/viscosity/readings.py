@@ -77,7 +77,8 @@ _COLUMNS = (
 
 def from_curve(curve: Mapping[str, FloatArray]) -> Readings:
     """Take readings back from the curve of a measurement, where their columns were put."""
-    return Readings(**{name: curve[name] for name in _COLUMNS}, errors="")
+    time_s, viscosity, noise, calibration, speed, rotor, line = (curve[n] for n in _COLUMNS)
+    return Readings(time_s, viscosity, noise, calibration, speed, rotor, line, errors="")
 
 
 def audited(

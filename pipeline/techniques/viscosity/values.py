@@ -66,8 +66,11 @@ def asked_of(law: TimeLaw, window: Windowed, config: ViscosityConfig) -> list[As
             )
         )
     if rate is not None:
+        # the refusals of viscosity tell what the law does not reach; K and n need not say it again
+        low, high = law.valid
         for t in times:
-            asked += _fluid(law, t)
+            if low <= t <= high:
+                asked += _fluid(law, t)
     return asked
 
 
@@ -133,7 +136,9 @@ def measured(
     except OutOfRange as error:
         raise FitRefused(str(error)) from error
     scatter, calibration = law.errors(slopes)
-    budget = (Contribution("scatter about the law", scatter, shared=False),)
+    budget: tuple[Contribution, ...] = (
+        Contribution("scatter about the law", scatter, shared=False),
+    )
     if calibration > 0:
         budget += (Contribution("viscometer calibration", calibration, shared=True),)
     return MeasuredValue(

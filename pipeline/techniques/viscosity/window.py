@@ -10,7 +10,7 @@ import numpy as np
 from pipeline.core.errors import FitRefused
 from pipeline.core.records import Flag
 from pipeline.techniques.viscosity.config import ViscosityConfig
-from pipeline.techniques.viscosity.readings import Readings
+from pipeline.techniques.viscosity.readings import Readings, from_curve
 
 _INTERVAL_CHANGE = 2.0  # a sampling interval that grows by more than this is another method
 
@@ -107,14 +107,8 @@ def combined(windows: Sequence[Windowed]) -> Readings:
     """Put the readings of several runs behind each other."""
     if len(windows) == 1:
         return windows[0].readings
-    first = windows[0].readings
-    return replace(
-        first,
-        **{
-            name: np.concatenate([getattr(w.readings, name) for w in windows])
-            for name in first.columns
-        },
-    )
+    columns = [w.readings.columns for w in windows]
+    return from_curve({n: np.concatenate([c[n] for c in columns]) for n in columns[0]})
 
 
 def common_range(ranges: Sequence[tuple[float, float]]) -> tuple[float, float]:

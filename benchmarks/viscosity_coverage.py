@@ -1,0 +1,110 @@
+"""How often the intervals of the room of viscosity hold the truth: many simulated campaigns.
+
+Run: python -m benchmarks.viscosity_coverage [campaigns] [workers]
+"""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from concurrent.futures import ProcessPoolExecutor
+
+import numpy as np
+
+from pipeline.core.records import FloatArray, Law, PropertyRecord, Recording, Source, Specimen
+from pipeline.core.technique import Context
+from pipeline.techniques import viscosity
+from pipeline.techniques.viscosity.config import ViscosityConfig
+from pipeline.twin.truth import TrueViscosity, true_viscosities
+from pipeline.twin.viscosity import BATCHES, VISCOMETER, SimulatedRun, simulate_viscosity
+
+CONTEXT = Context(ViscosityConfig(), VISCOMETER, {})
+_CHECKED_PER_LAW = 12
+
+
+def in_memory(run: SimulatedRun) -> tuple[Specimen, Recording]:
+    """Register row and recording of a simulated run, as its file would give them."""
+    kept = ~run.over
+    columns = {
+        "time_s": run.time_s[kept],
+        "rotor": np.full(int(kept.sum()), float(run.rotor)),
+        "speed_rpm": run.speed_rpm[kept],
+        "viscosity_Pas": run.viscosity_Pas[kept],
+        "torque": run.torque[kept],
+        "line": np.flatnonzero(kept) + 3.0,
+    }
+    source = Source("synthetic", "0" * 64, 3, len(kept) + 2, "utf-8", "twin", 1)
+    specimen = Specimen(
+        str(run.batch), run.material, "twin", "viscosity", "synthetic", None, {}, {}, {},
+        "specimens.csv", run.batch + 1,
+    )  # fmt: skip
+    return specimen, Recording(columns, {}, {}, source)
+
+
+def one(task: tuple[int, str]) -> Counter[tuple[str, str, bool]]:
+    """Count hits and misses of one material in one campaign: (material, key, inside)."""
+    seed, material = task
+    truth = true_viscosities()[material]
+    runs = [in_memory(simulate_viscosity(seed, material, b)) for b in range(1, BATCHES + 1)]
+    measurements = [viscosity.reduce(*run, CONTEXT) for run in runs]
+    summary = viscosity.summarise(measurements, CONTEXT)
+    counts: Counter[tuple[str, str, bool]] = Counter()
+    for record in summary.records:
+        low, high = record.ci95
+        name = f"{record.key} at {float(str(record.conditions['time_s'])) / 3600:g} h"
+        counts[material, name, low <= true_of(truth, record) <= high] += 1
+    for law in summary.laws:
+        if law.key == "viscosity":
+            for inside in law_hits(truth, law):
+                counts[material, "law", inside] += 1
+            counts[material, f"form {law.kind} {len(law.coefficients)}", True] += 1
+    return counts
+
+
+def true_of(truth: TrueViscosity, record: PropertyRecord) -> float:
+    """What a record would be without any error."""
+    time_s = float(str(record.conditions["time_s"]))
+    hours = time_s / 3600.0
+    rate = np.array([float(str(record.conditions.get("rate_per_s", 1.0)))])
+    if record.key == "viscosity":
+        return float(truth(np.array([time_s]), rate)[0])
+    if record.key == "viscosity_doubling_time":
+        times = np.linspace(time_s, 13 * 3600.0, 200_000)
+        values: FloatArray = truth(times, rate)
+        return float(times[np.argmax(values >= 2.0 * values[0])])
+    k = float(np.polynomial.polynomial.polyval(hours, truth.consistency))
+    n = float(np.polynomial.polynomial.polyval(hours, truth.index))
+    flow: dict[str, float] = {
+        "flow_consistency": k,
+        "flow_index": n,
+        "flow_consistency_wide_cup": k * n**n,
+    }
+    return flow[record.key]
+
+
+def law_hits(truth: TrueViscosity, law: Law) -> list[bool]:
+    """Whether the 95 % interval of a law holds the truth, along its range."""
+    hits = []
+    for rate in law.rates or (None,):
+        for time_s in np.linspace(*law.valid, _CHECKED_PER_LAW).tolist():
+            low, high = law.ci95(time_s, rate)
+            true = float(truth(np.array([time_s]), np.array([rate or 1.0]))[0])
+            hits.append(low <= true <= high)
+    return hits
+
+
+def main(campaigns: int, workers: int) -> None:
+    """Print coverage per material and key, and which forms the laws took."""
+    tasks = [(seed, m) for m in true_viscosities() for seed in range(1, campaigns + 1)]
+    total: Counter[tuple[str, str, bool]] = Counter()
+    with ProcessPoolExecutor(workers) as pool:
+        for counts in pool.map(one, tasks, chunksize=5):
+            total += counts
+    for material, name in sorted({(m, k) for m, k, _ in total}):
+        hits, misses = total[material, name, True], total[material, name, False]
+        said = f"{hits / (hits + misses):7.1%}" if not name.startswith("form") else "       "
+        sys.stdout.write(f"{material:20s} {name:44s} {said} of {hits + misses}\n")
+
+
+if __name__ == "__main__":
+    main(*(int(a) for a in (sys.argv[1:] + ["200", "2"][len(sys.argv) - 1 :])))
