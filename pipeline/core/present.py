@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from pipeline.core.quantity import Quantity
-from pipeline.core.records import Condition
+from pipeline.core.records import Condition, PropertyRecord
 from pipeline.core.units import from_si
 
 SYNTHETIC_BANNER = "SYNTHETIC: simulated data, not measurements"
@@ -37,6 +37,7 @@ _CONDITION_WORDS: dict[str, tuple[str, str]] = {
     "humidity": ("humidity", "%"),
     "frequency_Hz": ("frequency", "Hz"),
     "rate_per_s": ("rate", "1/s"),
+    "time_s": ("time since mixing", "h"),
     "window": ("window", "1"),  # of strain or of time in s: the method says which
     "electrode_area_m2": ("electrode area", "mm2"),
     "rate_V_per_s": ("rate of rise", "V/s"),
@@ -115,6 +116,12 @@ def readable(quantity: Quantity, key: str = "") -> str:
     if scale.decimals is not None:
         text += f" ± {scale.number(quantity.standard_uncertainty)}"
     return scale.with_unit(text)
+
+
+def readable_record(record: PropertyRecord) -> str:
+    """Write the value of a record: `158.8 ± 1.1 kPa`, or `>= 12.0 h` where it is only a limit."""
+    text = readable(record.quantity, record.key)
+    return f">= {text}" if record.bound == "lower" else text
 
 
 def readable_interval(interval: tuple[float, float], scale: Scale) -> str:

@@ -32,7 +32,7 @@ _READER = Reader("antonpaar", 1, Dialect(";", ","))
 
 
 def _layout(head: Head) -> Layout | None:
-    units = units_row([line or " " for line in head], ";")
+    units = units_row(Head([line or " " for line in head]), ";")
     return None if units is None else two_row_layout(head, ";", units - 1)
 
 

@@ -34,12 +34,13 @@ NOT_FINITE: dict[Detail, float] = {"nan": math.nan, "inf": math.inf, "-inf": -ma
 _ORIGIN_FIELDS = tuple(f.name for f in fields(Origin) if f.name != "diagnostics")
 _PROPERTY_FIELDS = (
     *("key", "symbol", "value", "unit", "standard_uncertainty", "u_independent", "u_shared"),
-    *("sd", "ci95", "n", "conditions", "campaign", "method", "standard", "budget"),
+    *("sd", "ci95", "bound", "n", "conditions", "campaign", "method", "standard", "budget"),
     *("diagnostics", "flags", "origins"),
 )
 _LAW_FIELDS = (
     *("key", "symbol", "kind", "unit", "argument", "argument_unit", "coefficients", "covariance"),
-    *("valid", "conditions", "campaign", "method", "diagnostics", "flags", "origins"),
+    *("valid", "parts", "rates", "degrees_of_freedom", "conditions", "campaign", "method"),
+    *("diagnostics", "flags", "origins"),
 )
 _REFUSAL_FIELDS = ("key", "reason", "campaign", "specimen", "conditions", "diagnostics")
 
@@ -190,7 +191,7 @@ def record_document(record: PropertyRecord) -> Document:
         ),
         None if record.sd is None else _number(record.sd),
         [_number(bound) if math.isfinite(bound) else None for bound in record.ci95],
-        *(record.n, conditions_document(record.conditions), record.campaign),
+        *(record.bound, record.n, conditions_document(record.conditions), record.campaign),
         *(record.method, known.standard),
         [{"source": c.source, "u": _number(c.u), "shared": c.shared} for c in record.budget],
         details_document(record.diagnostics),
@@ -214,6 +215,7 @@ def record_from(material: str, document: Mapping[str, Any]) -> PropertyRecord:
         n=document["n"],
         sd=document["sd"],
         ci95=(-math.inf if low is None else low, math.inf if high is None else high),
+        bound=document["bound"],
         conditions=conditions_from(document["conditions"]),
         method=document["method"],
         budget=tuple(
@@ -253,6 +255,9 @@ def law_document(law: Law) -> Document:
         [float(c) for c in law.coefficients],
         [[float(c) for c in row] for row in law.covariance],
         [_number(bound) for bound in law.valid],
+        list(law.parts),
+        None if law.rates is None else [_number(rate) for rate in law.rates],
+        None if law.degrees_of_freedom is None else _number(law.degrees_of_freedom),
         *(conditions_document(law.conditions), law.campaign, law.method),
         details_document(law.diagnostics),
         [str(flag) for flag in law.flags],
@@ -276,6 +281,9 @@ def law_from(material: str, document: Mapping[str, Any]) -> Law:
         coefficients=tuple(document["coefficients"]),
         covariance=tuple(tuple(row) for row in document["covariance"]),
         valid=(low, high),
+        parts=tuple(document["parts"]),
+        rates=None if document["rates"] is None else (document["rates"][0], document["rates"][1]),
+        degrees_of_freedom=document["degrees_of_freedom"],
         conditions=conditions_from(document["conditions"]),
         method=document["method"],
         origins=tuple(_origin_from(o) for o in document["origins"]),

@@ -8,9 +8,9 @@ from collections.abc import Mapping, Sequence
 from pipeline.core.present import (
     SYNTHETIC_BANNER,
     aligned,
-    readable,
     readable_conditions,
     readable_interval,
+    readable_record,
     readable_unit,
     scale_of,
 )
@@ -153,7 +153,7 @@ def _row(
     return (
         record.key,
         property_key(record.key).symbol,
-        readable(record.quantity, record.key),
+        readable_record(record),
         readable_interval(record.ci95, scale_of(record.quantity, record.key)),
         str(record.n),
         ", ".join(said),

@@ -55,7 +55,7 @@ def _record(
     row: tuple[Any, ...], conditions: dict[str, Condition], details: dict[str, Detail], owned: Owned
 ) -> PropertyRecord:
     number, material, key, campaign, value, unit, _, u_independent, u_shared, *rest = row
-    sd, low, high, n, _, method, _ = rest
+    sd, low, high, bound, n, _, method, _ = rest
     return PropertyRecord(
         key=key,
         material=material,
@@ -64,6 +64,7 @@ def _record(
         n=n,
         sd=sd,
         ci95=(-math.inf if low is None else low, math.inf if high is None else high),
+        bound=bound,
         conditions=conditions,
         method=method,
         budget=tuple(owned.budgets[number]),
@@ -83,12 +84,15 @@ def _law(
     row: tuple[Any, ...], conditions: dict[str, Condition], details: dict[str, Detail], owned: Owned
 ) -> Law:
     number, material, key, campaign, kind, unit, argument, argument_unit, *rest = row
-    coefficients, covariance, low, high, _, method, _ = rest
+    coefficients, covariance, low, high, parts, slow, fast, dof, _, method, _ = rest
     return Law(
         *(key, material, campaign, kind, unit, argument, argument_unit),
         coefficients=tuple(json.loads(coefficients)),
         covariance=tuple(map(tuple, json.loads(covariance))),
         valid=(low, high),
+        parts=tuple(json.loads(parts)),
+        rates=None if slow is None else (slow, fast),
+        degrees_of_freedom=dof,
         conditions=conditions,
         method=method,
         origins=tuple(owned.origins[number]),

@@ -43,14 +43,15 @@ CREATE TABLE properties (
     id INTEGER PRIMARY KEY, material TEXT NOT NULL REFERENCES materials, key TEXT NOT NULL,
     campaign TEXT NOT NULL, value REAL NOT NULL, unit TEXT NOT NULL,
     standard_uncertainty REAL NOT NULL, u_independent REAL NOT NULL, u_shared REAL NOT NULL,
-    sd REAL, ci95_low REAL, ci95_high REAL, n INTEGER NOT NULL,
+    sd REAL, ci95_low REAL, ci95_high REAL, bound TEXT NOT NULL, n INTEGER NOT NULL,
     conditions TEXT NOT NULL, method TEXT NOT NULL, diagnostics TEXT NOT NULL
 ) STRICT;
 CREATE TABLE laws (
     id INTEGER PRIMARY KEY, material TEXT NOT NULL REFERENCES materials, key TEXT NOT NULL,
     campaign TEXT NOT NULL, kind TEXT NOT NULL, unit TEXT NOT NULL, argument TEXT NOT NULL,
     argument_unit TEXT NOT NULL, coefficients TEXT NOT NULL, covariance TEXT NOT NULL,
-    valid_low REAL NOT NULL, valid_high REAL NOT NULL,
+    valid_low REAL NOT NULL, valid_high REAL NOT NULL, parts TEXT NOT NULL,
+    rates_low REAL, rates_high REAL, degrees_of_freedom REAL,
     conditions TEXT NOT NULL, method TEXT NOT NULL, diagnostics TEXT NOT NULL
 ) STRICT;
 CREATE TABLE refusals (
@@ -83,14 +84,15 @@ CREATE INDEX refusals_of_material ON refusals (material, key);
 # Fields of a card's entries, in the order of the columns behind `material`.
 _PROPERTY_CELLS = (
     *("key", "campaign", "value", "unit", "standard_uncertainty", "u_independent", "u_shared"),
-    *("sd", "ci95", "n", "conditions", "method", "diagnostics"),
+    *("sd", "ci95", "bound", "n", "conditions", "method", "diagnostics"),
 )
 _LAW_CELLS = (
     *("key", "campaign", "kind", "unit", "argument", "argument_unit", "coefficients"),
-    *("covariance", "valid", "conditions", "method", "diagnostics"),
+    *("covariance", "valid", "parts", "rates", "degrees_of_freedom"),
+    *("conditions", "method", "diagnostics"),
 )
 _REFUSAL_CELLS = ("key", "reason", "campaign", "specimen", "conditions", "diagnostics")
-_INTERVALS = frozenset({"ci95", "valid"})
+_INTERVALS = frozenset({"ci95", "valid", "rates"})
 
 Cell = str | float | int | None
 Row = tuple[Cell, ...]
@@ -147,7 +149,7 @@ def _cells(entry: Document, names: Iterable[str]) -> Iterator[Cell]:
     """Flatten an entry: an interval gives two cells, what is nested becomes JSON text."""
     for name in names:
         if name in _INTERVALS:
-            yield from entry[name]
+            yield from entry[name] or (None, None)
         else:
             yield _cell(entry[name])
 

@@ -13,6 +13,7 @@ from pipeline.core.present import (
     readable,
     readable_conditions,
     readable_interval,
+    readable_record,
     readable_uncertainty,
     scale_of,
     si_text,
@@ -192,7 +193,7 @@ def _value_facts(record: PropertyRecord) -> Iterator[tuple[str, str]]:
     quantity, scale = record.quantity, scale_of(record.quantity, record.key)
     si = si_text(quantity.value, quantity.unit)
     u = Scale(quantity.unit, None).with_number(quantity.standard_uncertainty)
-    yield "value", f"{readable(quantity, record.key)}  ({si}, u = {u})"
+    yield "value", f"{readable_record(record)}  ({si}, u = {u})"
     low, high = (si_text(bound, quantity.unit) for bound in record.ci95)
     yield "95 %", f"{readable_interval(record.ci95, scale)}  ({low} to {high})"
     sd = "" if record.sd is None else f", sd {readable_uncertainty(record.sd, scale.unit)}"
