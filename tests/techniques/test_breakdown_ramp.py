@@ -107,7 +107,7 @@ def test_noise_before_the_ramp_is_no_collapse() -> None:
     volts = np.concatenate((2.0 * rng.standard_normal(50), ramp(0.0, 0.0)))
     volts[:100] += 2.0 * rng.standard_normal(100)
     assert end(volts).voltage_V == 5950.0
-    rise = audit_rise(0.5 * np.arange(volts.size), volts, end(volts).peak, 0.1)
+    rise = audit_rise(0.5 * np.arange(float(volts.size)), volts, end(volts).peak, 0.1)
     assert rise.start_V == pytest.approx(1000.0, abs=10.0)
     assert rise.rate_V_per_s == pytest.approx(100.0, rel=1e-3)
     assert rise.duration_s == 49.5
@@ -124,7 +124,7 @@ def test_volts_and_seconds_only_scale(scale: float, step: float, n: int, dt: flo
     one, other = end(volts), end(scale * volts)
     assert other.voltage_V == pytest.approx(scale * one.voltage_V)
     assert (other.end, other.peak) == (one.end, one.peak) == ("collapse", n - 1)
-    t = dt * np.arange(volts.size)
+    t = dt * np.arange(float(volts.size))
     rise = audit_rise(t, scale * volts, one.peak, 0.1)
     assert rise.rate_V_per_s == pytest.approx(scale * step / dt)
     assert (rise.slowest, rise.fastest) == pytest.approx((1.0, 1.0))
