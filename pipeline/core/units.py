@@ -97,6 +97,7 @@ UNITS: dict[str, tuple[str, float, float]] = {
     "kV_per_s": ("V/s", 1e3, 0.0),
     "V/s": ("V/s", 1.0, 0.0),
     "Pa.s": ("Pa.s", 1.0, 0.0),
+    "Pa.s^n": ("Pa.s^n", 1.0, 0.0),  # of a power-law fluid's consistency, whatever its n
     "Pas": ("Pa.s", 1.0, 0.0),
     "mPa.s": ("Pa.s", 1e-3, 0.0),
     "mPas": ("Pa.s", 1e-3, 0.0),

@@ -23,7 +23,7 @@ def registry() -> pint.UnitRegistry[float]:
     return pint.UnitRegistry()
 
 
-@pytest.mark.parametrize("unit", sorted(UNITS))
+@pytest.mark.parametrize("unit", sorted(UNITS.keys() - {"Pa.s^n"}))  # its n is the fluid's own
 def test_table_agrees_with_pint(unit: str, registry: pint.UnitRegistry[float]) -> None:
     spelt, si = (_TO_PINT.get(u, u) for u in (unit, UNITS[unit][0]))
     expected = registry.Quantity(3.7, spelt).to(si).magnitude
