@@ -66,11 +66,11 @@ def fields(
     ]  # fmt: skip
 
 
-def summarise(measured: Sequence[Measurement], **config: object) -> Summary:
-    return TECHNIQUE.summarise(measured, context(TECHNIQUE, **config))
+def summarise(measured: Sequence[Measurement], **config: Any) -> Summary:
+    return TECHNIQUE.summarise(measured, Context(BreakdownConfig(**config), Machine(), {}))
 
 
-def records(measured: Sequence[Measurement], **config: object) -> dict[str, PropertyRecord]:
+def records(measured: Sequence[Measurement], **config: Any) -> dict[str, PropertyRecord]:
     return {r.key: r for r in summarise(measured, **config).records}
 
 
@@ -327,8 +327,8 @@ def test_right_censored_specimens_stay_in_the_fit() -> None:
         (
             [40.0, 40.0, 50.0],
             None,
-            "2 distinct failures in 3 values; at least 3 are needed: test more specimens, or read "
-            "the instrument to more digits",
+            "only 2 distinct failure(s) among 3 values; at least 3 are needed: test more specimens, "
+            "or read the instrument to more digits",
         ),
         (
             [40.0, 41.0, 50.0],

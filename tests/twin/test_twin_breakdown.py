@@ -35,7 +35,6 @@ from pipeline.twin.breakdown import (
     simulate_breakdown,
     true_shape,
 )
-from pipeline.twin.campaign import SEED
 from pipeline.twin.draws import MACHINE, MICROMETER
 from pipeline.twin.part import SYNTHETIC
 from pipeline.twin.quirks import Quirk, as_utf16, cut_short
@@ -53,6 +52,7 @@ from pipeline.twin.truth import true_value
 DAQ = "breakdown/sylgard-182-10to1/synthetic-1.csv"
 PLAIN = "breakdown/sylgard-182-30to1/synthetic-2.csv"
 SETTINGS = Context(TECHNIQUE.config(), MACHINE, {})
+SEED = 2022  # of the files below; the committed campaign may be of another
 TRUTH = {(t.key, t.material): t.value for t in breakdown_truth()} | {
     ("weibull_shape_unbiased", m): true_shape(m) for m in MATERIALS
 }
