@@ -128,16 +128,17 @@ def in_memory(seed: int, material: str) -> list[Measurement]:
 
 
 def test_every_interval_covers_the_truth_of_two_hundred_campaigns() -> None:
+    """Two of the four compositions of each campaign by turns: 400 intervals of every key."""
     hits: Counter[str] = Counter()
     campaigns = 200
     for seed in range(campaigns):
-        for material in MATERIALS:
+        for material in MATERIALS[seed % 2 :: 2]:
             for record in summarise(in_memory(seed, material)):
                 low, high = record.ci95
                 hits[record.key] += low <= TRUTH[record.key, material] <= high
     assert set(hits) == set(TECHNIQUE.yields)
     for key, count in hits.items():
-        assert 0.93 <= count / (campaigns * len(MATERIALS)) <= 0.97, key
+        assert 0.93 <= count / (2 * campaigns) <= 0.97, key
 
 
 @pytest.mark.parametrize("material", [m for m in MATERIALS if keeps_log(m)])
