@@ -31,6 +31,7 @@ def as_utf16(path: str) -> Quirk:
 
 def altered(path: str, change: Callable[[bytes], bytes]) -> Quirk:
     """Make a quirk of what it does to the bytes of one file."""
+    """Make a quirk that changes the bytes of one file."""
 
     def quirk(contents: Mapping[str, bytes]) -> Mapping[str, bytes]:
         if path not in contents:

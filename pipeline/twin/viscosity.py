@@ -189,7 +189,8 @@ def viscosity_part(seed: int) -> Part:
             ending = "csv" if material == AS_CSV else "log"
             file = f"{material}/synthetic-{batch}.{ending}"
             contents[f"{TECHNIQUE}/{file}"] = _file(run, mixed_at)
-            row = _row(run, file, mixed_at)
+            mass_g = stream(seed, TECHNIQUE, material, str(batch), "mass").uniform(95.0, 105.0)
+            row = _row(run, file, mixed_at, mass_g)
             rows.append(row)
             specimens[row["specimen"]] = {"batch_factor": run.factor}
             mixed_at += timedelta(days=1, minutes=7)
@@ -238,13 +239,13 @@ def _file(run: SimulatedRun, mixed_at: datetime) -> bytes:
     return ndj8s_log(remarks, stamps[run.batch], readings, probe)
 
 
-def _row(run: SimulatedRun, file: str, mixed_at: datetime) -> dict[str, str]:
+def _row(run: SimulatedRun, file: str, mixed_at: datetime, mass_g: float) -> dict[str, str]:
     return {
         "specimen": f"v-{run.material}-{run.batch}",
         "material": run.material,
         "file": file,
         "mixed_at": mixed_at.isoformat(timespec="seconds"),
-        "mass_g": "100",
+        "mass_g": f"{mass_g:.1f}",
         "cup": "150 ml plastic",
         "temperature_C": "22",
         "humidity_percent": "52",

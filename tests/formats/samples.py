@@ -261,3 +261,7 @@ SAMPLES = (
     ),
 )
 BY_NAME = {sample.format: sample for sample in SAMPLES}
+# Readers of lines that are no plain table of numbers: test_viscometer.py and test_flow.py.
+TESTED_APART = (
+    "antonpaar", "flow_tab", "ndj8s", "rheocompass", "rheodata", "schmid", "viscometer_csv",
+)  # fmt: skip

@@ -86,7 +86,7 @@ def test_it_says_everywhere_that_it_is_synthetic(contents: dict[str, bytes]) -> 
     assert set(declared) == {"title", "laboratory", "licence", "source", "synthetic", "note"}
     assert f"--seed {SEED}" in declared["note"]
     assert declared["note"].startswith("SYNTHETIC")
-    for technique in ("compression", "tension"):
+    for technique in ("compression", "tension", "viscosity"):
         for row in _register(contents, technique):
             assert row["comment"] == "SYNTHETIC: simulated, not measured"
             assert row["instrument"].startswith("simulated")
@@ -113,6 +113,9 @@ def test_registers_hold_five_specimens_each_and_name_every_file(
     registers = {"compression/specimens.csv", "tension/specimens.csv"}
     mine = {p for p in contents if p.startswith(("compression/", "tension/"))}
     assert named == mine - registers
+    named |= {f"viscosity/{r['file']}" for r in _register(contents, "viscosity")}
+    registers = {f"{t}/specimens.csv" for t in ("compression", "tension", "viscosity")}
+    assert named == set(contents) - registers - {"campaign.toml", "MANIFEST.sha256"}
     assert list(compressed[0]) == [
         *("specimen", "material", "file", "diameter_mm", "u_diameter_mm", "height_mm"),
         *("speed_mm_per_min", "age", "cure", "cured_on", "tested_on", "temperature_C"),
@@ -203,6 +206,15 @@ def test_the_truth_lies_apart_and_is_no_part_of_the_campaign(tmp_path: Path) -> 
     assert printed <= {(e.key, e.material, e.age, e.value) for e in truth_table()}
     assert len(truth["specimens"]) == sum(len(p(7).specimens) for p in PARTS)
     assert set(truth["calibration_errors"]) == {p(7).technique for p in PARTS}
+    machines = [v for v in truth["values"] if not v["key"].startswith(("viscosity", "flow"))]
+    assert len(machines) == 5 * 6
+    assert {(v["key"], v["material"], v["age"], v["value"]) for v in machines} == {
+        (e.key, e.material, e.age, e.value)
+        for e in truth_table()
+        if e.key.startswith(("compressive", "tensile", "elongation"))
+    }
+    assert len(truth["specimens"]) == 90 + 18
+    assert set(truth["calibration_errors"]) == {"compression", "tension", "viscosity"}
     assert (
         truth["calibration_errors"]["compression"]["caliper_m"]
         == (truth["calibration_errors"]["tension"]["caliper_m"])
