@@ -289,7 +289,7 @@ def test_several_runs_give_one_law_of_their_mean() -> None:
 
 def test_the_intervals_hold_the_truth_of_a_single_run() -> None:
     """200 runs: noise of every reading and one calibration error each, as the room believes."""
-    config = ViscosityConfig(max_degree=2, stated_times_s=(3600.0, 43200.0))
+    config = ViscosityConfig(laws=("polynomial",), max_degree=2, stated_times_s=(3600.0, 43200.0))
     context = Context(config, MACHINE, {})
     few = np.arange(0.75, 13.0, 0.75) * HOUR
     hits = {3600.0: 0, 43200.0: 0}

@@ -93,6 +93,7 @@ def test_it_says_everywhere_that_it_is_synthetic(contents: dict[str, bytes]) -> 
             assert "synthetic" in row["file"]
     for path, data in contents.items():
         if path.startswith("tension/") and path.endswith("synthetic-1.csv"):
+        if path.startswith("tension") and path.endswith("synthetic-1.csv"):
             assert data.startswith(b'General : Comment,"SYNTHETIC: simulated, not measured"\r\n')
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Literal
 
 from pydantic import Field, model_validator
 
@@ -33,6 +34,11 @@ class ViscosityConfig(Declared):
         default=(0.10, 1.0), description="part of full torque within which a reading counts"
     )
     min_readings: int = Field(default=8, ge=4, description="fewest readings a law is fitted to")
+    laws: tuple[Literal["polynomial", "exponential", "power-law-to-gel"], ...] = Field(
+        default=("polynomial", "exponential", "power-law-to-gel"),
+        min_length=1,
+        description="laws of a Newtonian liquid on offer",
+    )
     max_degree: int = Field(default=5, ge=1, le=7, description="highest polynomial on offer")
     max_relative_error: float = Field(
         default=0.15, gt=0, description="root mean square of residual over law, refused beyond"

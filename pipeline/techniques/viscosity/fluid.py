@@ -160,9 +160,12 @@ def _swept(window: Windowed, config: ViscosityConfig) -> tuple[Windowed, list[Sw
         )
     first, last = found[0].first, found[-1].last
     times = window.readings.time_s
+    # the window may cut the sweep at its edge: one that lies within a sweep's pause is reached
+    pause = float(np.median(np.diff([times[s.first] for s in found])))
+    low, high = float(times[first]), float(times[last - 1])
     valid = (
-        window.valid[0] if first == 0 else float(times[first]),
-        window.valid[1] if last == len(times) else float(times[last - 1]),
+        window.valid[0] if low - window.valid[0] <= pause else low,
+        window.valid[1] if window.valid[1] - high <= pause else high,
     )
     moved = [replace(s, first=s.first - first, last=s.last - first) for s in found]
     cut = replace(window, readings=window.readings.where(slice(first, last)), valid=valid)

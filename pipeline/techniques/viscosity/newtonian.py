@@ -17,6 +17,7 @@ from pipeline.estimators.monotone import fit_non_decreasing
 from pipeline.estimators.nonlinear import NonlinearFit, fit_nonlinear
 from pipeline.estimators.polynomial import PolynomialFit
 from pipeline.estimators.selection import Choice, choose
+from pipeline.techniques.viscosity.calibration import settled
 from pipeline.techniques.viscosity.config import ViscosityConfig
 from pipeline.techniques.viscosity.readings import Readings
 from pipeline.techniques.viscosity.time_law import TimeLaw, drift_of, relative_error
@@ -31,13 +32,15 @@ def fit_newtonian(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeL
     """Choose the smallest law that the readings support and say what it is worth.
 
     Polynomials are kept positive and from falling; candidates are compared by AICc and the choice
-    is checked by leave-one-out cross-validation (see `estimators.selection`).
+    is checked by leave-one-out cross-validation (see `estimators.selection`). What changes of
+    rotor or speed show of the calibration error is taken off first (see `calibration`).
 
     Raises
     ------
     FitRefused : no candidate could be fitted, or the best leaves too large a relative error
     """
-    readings = combined(windows)
+    steps = settled(combined(windows), config.max_degree)
+    readings = steps.readings
     choice = choose(_candidates(readings, config))
     kind, coefficients, covariance = _parameters(choice)
     law, slopes = FORMS[kind](coefficients, readings.time_s, None, ())
@@ -67,20 +70,28 @@ def fit_newtonian(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeL
         dof=choice.fit.dof,
         name=choice.name,
         reason=choice.reason,
-        diagnostics=scores(choice),
-        flags=_flags(choice),
+        diagnostics={
+            "calibration_shift": steps.shift,
+            "calibration_left": steps.left,
+            **scores(choice),
+        },
+        flags=(*steps.flags, *_flags(choice)),
     )
 
 
 def _candidates(readings: Readings, config: ViscosityConfig) -> list[tuple[str, Callable[[], Fit]]]:
     """All laws on offer, the one with fewest coefficients first."""
-    offers: list[tuple[str, Callable[[], Fit]]] = [
-        (f"{POLYNOMIAL} of degree {degree}", partial(_polynomial, readings, degree))
-        for degree in range(config.max_degree + 1)
-    ]
-    offers.insert(2, (EXPONENTIAL, partial(_exponential, readings)))
-    offers.insert(4, (POWER_LAW_TO_GEL, partial(_power_law_to_gel, readings)))
-    return offers
+    offers: list[tuple[int, str, Callable[[], Fit]]] = []
+    if POLYNOMIAL in config.laws:
+        offers += [
+            (degree + 1, f"{POLYNOMIAL} of degree {degree}", partial(_polynomial, readings, degree))
+            for degree in range(config.max_degree + 1)
+        ]
+    if EXPONENTIAL in config.laws:
+        offers.append((2, EXPONENTIAL, partial(_exponential, readings)))
+    if POWER_LAW_TO_GEL in config.laws:
+        offers.append((3, POWER_LAW_TO_GEL, partial(_power_law_to_gel, readings)))
+    return [(name, fit) for _, name, fit in sorted(offers, key=lambda offer: offer[0])]
 
 
 def _polynomial(readings: Readings, degree: int) -> PolynomialFit:
