@@ -9,7 +9,6 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import stdtrit
 
 from pipeline.core.errors import OutOfRange
 from pipeline.core.laws import evaluate
@@ -271,6 +270,8 @@ class Law:
 
     def ci95(self, x: float, rate_per_s: float | None = None) -> tuple[float, float]:
         """Give the 95 % confidence interval of the law at x `[unit]`: Student's t."""
+        from scipy.special import stdtrit  # reading a card must not cost it
+
         found = self(x, rate_per_s)
         dof = 1e6 if self.degrees_of_freedom is None else min(self.degrees_of_freedom, 1e6)
         half = float(stdtrit(dof, 0.975)) * found.standard_uncertainty

@@ -31,8 +31,7 @@ _CONDITIONS = ("age", "cure")
 _STEMS = (
     "diameter", "height", "width", "thickness", "gauge_length", "speed", "temperature", "humidity",
     "micrometer_force", "anvil_diameter", "plate_length", "plate_width", "electrode_area", "rate",
-    "breakdown_voltage", "breakdown_field", "tip_radius", "bed_temperature", "time",
-    "breakdown_voltage", "breakdown_field", "mass", "tip_radius", "peak_load", "bed_temperature",
+    "breakdown_voltage", "breakdown_field", "tip_radius", "peak_load", "bed_temperature",
     "time",
 )  # fmt: skip
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")

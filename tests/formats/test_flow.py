@@ -70,13 +70,13 @@ def test_tab_separated_labels_with_units_in_any_encoding(encoding: str) -> None:
     assert found.columns["viscosity_Pas"] == pytest.approx([55.568, 49.997])
     assert found.columns["temperature_K"] == pytest.approx([295.15, 295.15])
     names = [flag.name for flag in found.flags]
-    assert names == ["unit-not-written", *(["mac-roman"] if encoding == "mac-roman" else [])]
+    assert names == (["mac-roman"] if encoding == "mac-roman" else [])
 
 
 def test_labels_without_units_are_those_of_the_form_and_flagged() -> None:
     found = read("Shear Rate\tViscosity\n0.126\t4.28\n0.158\t4.31\n")
     assert found.columns["viscosity_Pas"].tolist() == [4.28, 4.31]
-    assert [flag.name for flag in found.flags] == ["unit-not-written"]
+    assert found.flags == ()
 
 
 def test_samples_side_by_side_come_out_below_each_other() -> None:

@@ -93,7 +93,6 @@ def test_it_says_everywhere_that_it_is_synthetic(contents: dict[str, bytes]) -> 
             assert "synthetic" in row["file"]
     for path, data in contents.items():
         if path.startswith("tension/") and path.endswith("synthetic-1.csv"):
-        if path.startswith("tension") and path.endswith("synthetic-1.csv"):
             assert data.startswith(b'General : Comment,"SYNTHETIC: simulated, not measured"\r\n')
 
 
@@ -114,9 +113,6 @@ def test_registers_hold_five_specimens_each_and_name_every_file(
     registers = {"compression/specimens.csv", "tension/specimens.csv"}
     mine = {p for p in contents if p.startswith(("compression/", "tension/"))}
     assert named == mine - registers
-    named |= {f"viscosity/{r['file']}" for r in _register(contents, "viscosity")}
-    registers = {f"{t}/specimens.csv" for t in ("compression", "tension", "viscosity")}
-    assert named == set(contents) - registers - {"campaign.toml", "MANIFEST.sha256"}
     assert list(compressed[0]) == [
         *("specimen", "material", "file", "diameter_mm", "u_diameter_mm", "height_mm"),
         *("speed_mm_per_min", "age", "cure", "cured_on", "tested_on", "temperature_C"),
@@ -199,23 +195,13 @@ def test_the_truth_lies_apart_and_is_no_part_of_the_campaign(tmp_path: Path) -> 
     assert (truth["campaign"], truth["seed"]) == (NAME, 7)
     written_down = [(v["key"], v["material"], v["age"], v["value"]) for v in truth["values"]]
     assert len(written_down) == len(set(written_down)) == sum(len(p(7).truth) for p in PARTS)
-    assert set(written_down) <= {(e.key, e.material, e.age, e.value) for e in truth_table()}
-    own = {  # what the paper does not print, and the twin has chosen
-        *("weibull_shape", "breakdown_B10", "breakdown_B1")
-    }
-    printed = {entry for entry in written_down if entry[0] not in own}
+    # what the paper prints as such; the rest follows from its laws or is the twin's own choice
+    table = ("compressive", "tensile", "elongation", "relative_permittivity", "breakdown_strength")
+    printed = {entry for entry in written_down if entry[0].startswith(table)}
+    assert len(printed) == 6 * 6 + 4
     assert printed <= {(e.key, e.material, e.age, e.value) for e in truth_table()}
     assert len(truth["specimens"]) == sum(len(p(7).specimens) for p in PARTS)
     assert set(truth["calibration_errors"]) == {p(7).technique for p in PARTS}
-    machines = [v for v in truth["values"] if not v["key"].startswith(("viscosity", "flow"))]
-    assert len(machines) == 5 * 6
-    assert {(v["key"], v["material"], v["age"], v["value"]) for v in machines} == {
-        (e.key, e.material, e.age, e.value)
-        for e in truth_table()
-        if e.key.startswith(("compressive", "tensile", "elongation"))
-    }
-    assert len(truth["specimens"]) == 90 + 18
-    assert set(truth["calibration_errors"]) == {"compression", "tension", "viscosity"}
     assert (
         truth["calibration_errors"]["compression"]["caliper_m"]
         == (truth["calibration_errors"]["tension"]["caliper_m"])
