@@ -1,11 +1,19 @@
 """The rooms: one module per technique, and the one list of them."""
 
 from pipeline.core.technique import Technique
-from pipeline.techniques import breakdown, compression, permittivity, tension, viscosity
+from pipeline.techniques import (
+    breakdown,
+    compression,
+    nanoindentation,
+    permittivity,
+    tension,
+    viscosity,
+)
 
 TECHNIQUES: dict[str, Technique] = {
     "breakdown": breakdown.TECHNIQUE,
     "compression": compression.TECHNIQUE,
+    "nanoindentation": nanoindentation.TECHNIQUE,
     "permittivity": permittivity.TECHNIQUE,
     "tension": tension.TECHNIQUE,
     "viscosity": viscosity.TECHNIQUE,

@@ -13,6 +13,7 @@ from pathlib import Path
 from pipeline.core.errors import ConfigError
 from pipeline.twin.breakdown import breakdown_part
 from pipeline.twin.compression import compression_part
+from pipeline.twin.nanoindentation import nanoindentation_part
 from pipeline.twin.part import SYNTHETIC, Part
 from pipeline.twin.permittivity import permittivity_part
 from pipeline.twin.quirks import Quirk
@@ -30,6 +31,7 @@ PARTS: tuple[Callable[[int], Part], ...] = (
     permittivity_part,
     breakdown_part,
     viscosity_part,
+    nanoindentation_part,
 )
 
 _CAMPAIGN = """\

@@ -7,9 +7,12 @@ afterwards and agrees with them, as it does when a lab hashes what its instrumen
 from __future__ import annotations
 
 import codecs
+import csv
+import io
 from collections.abc import Callable, Mapping
 
 from pipeline.core.errors import ConfigError
+from pipeline.twin.writers import register_csv
 
 Quirk = Callable[[Mapping[str, bytes]], Mapping[str, bytes]]
 
@@ -17,6 +20,28 @@ Quirk = Callable[[Mapping[str, bytes]], Mapping[str, bytes]]
 def cut_short(path: str) -> Quirk:
     """End a file inside its last number, as an interrupted copy does."""
     return altered(path, lambda data: data.rstrip(b'\r\n"')[:-1])
+
+
+def rows_lost(path: str, rows: int) -> Quirk:
+    """End a file some whole rows early, as a copy to a full disk does."""
+    return altered(path, lambda data: b"".join(data.splitlines(keepends=True)[:-rows]))
+
+
+def typed_otherwise(path: str, row: int, column: str, text: str) -> Quirk:
+    """Let someone have typed another text into one cell of a register.
+
+    Parameters
+    ----------
+    row : counted from 1 below the header
+    column : as the header names it
+    """
+
+    def retype(data: bytes) -> bytes:
+        table = list(csv.DictReader(io.StringIO(data.decode(), newline="")))
+        table[row - 1][column] = text
+        return register_csv(table)
+
+    return altered(path, retype)
 
 
 def open_ended(path: str) -> Quirk:

@@ -6,6 +6,7 @@ import tomllib
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
+from typing import Any
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
@@ -49,14 +50,19 @@ class TrueValue:
 
 
 @cache
+def document() -> dict[str, Any]:
+    """Read `truth.toml`."""
+    return tomllib.loads((files("pipeline.twin") / "truth.toml").read_text("utf-8"))
+
+
+@cache
 def truth_table() -> tuple[TrueValue, ...]:
     """Read the whole table, in the order of `truth.toml`.
 
     Source: Sikulskyi et al. 2022, Front. Robot. AI 9:1034914, Table 4 (CC BY).
     """
-    document = tomllib.loads((files("pipeline.twin") / "truth.toml").read_text("utf-8"))
     table = []
-    for material, printed in document["materials"].items():
+    for material, printed in document()["materials"].items():
         for name, value in printed.items():
             key, unit, age = _KEYS[name]
             table.append(TrueValue(key, material, age, to_si(value, unit), si_factor(unit)[0]))

@@ -8,7 +8,15 @@ import io
 from collections.abc import Iterable, Mapping, Sequence
 from datetime import datetime
 
+import numpy as np
+
 from pipeline.core.records import FloatArray
+
+_DAYS = ("Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun")
+_MONTHS = (
+    *("Jan", "Feb", "Mar", "Apr", "May", "Jun"),
+    *("Jul", "Aug", "Sep", "Oct", "Nov", "Dec"),
+)
 
 
 def chatillon_log(
@@ -167,6 +175,36 @@ def viscometer_csv(
         )
         lines.append(f"{hours:.5f},{rotor},{speed:g},{shown[0]},{shown[1]},{probe}")
     return _lines(lines, "\n")
+
+
+def hysitron_text(
+    started: datetime,
+    segments: Sequence[int],
+    depth_m: FloatArray,
+    force_N: FloatArray,
+    time_s: FloatArray,
+) -> bytes:
+    """Write a Hysitron (TriboScan) export: tabs, six decimals, ISO-8859-1, LF.
+
+    The form has no field for a remark. The signals in volts follow the quantities as they do in a
+    real export: a capacitive depth sensor is linear, an electrostatic drive goes with the root.
+
+    Parameters
+    ----------
+    segments : samples of each segment of the load function; blank lines part them
+    depth_m, force_N, time_s : shape (n,) each
+    """
+    day, month = _DAYS[started.weekday()], _MONTHS[started.month - 1]  # whatever the locale
+    stamp = f"{day} {month} {started.day:2} {started:%H:%M:%S} {started.year}"
+    head = [stamp, "", f"Number of Points = {depth_m.size}"]
+    head.append("Depth (nm)\tLoad (\u00b5N)\tTime (s)\tDepth (V)\tLoad (V)")
+    nm, uN = 1e9 * depth_m, 1e6 * force_N
+    signals = (-1.8e-4 * nm - 2.5e-3, np.sqrt(np.maximum(uN + 65.0, 0.0) / 297.0))
+    table = np.column_stack([nm, uN, time_s, *signals]).tolist()
+    rows = ["\t".join(f"{value:.6f}" for value in row) for row in table]
+    for end in np.cumsum(segments)[-2::-1].tolist():
+        rows.insert(end, "")
+    return "".join(line + "\n" for line in head + rows).encode("latin-1")
 
 
 def register_csv(rows: Sequence[Mapping[str, str]]) -> bytes:
