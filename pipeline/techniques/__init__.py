@@ -4,6 +4,7 @@ from pipeline.core.technique import Technique
 from pipeline.techniques import (
     breakdown,
     compression,
+    handling,
     nanoindentation,
     permittivity,
     tension,
@@ -13,6 +14,7 @@ from pipeline.techniques import (
 TECHNIQUES: dict[str, Technique] = {
     "breakdown": breakdown.TECHNIQUE,
     "compression": compression.TECHNIQUE,
+    "handling": handling.TECHNIQUE,
     "nanoindentation": nanoindentation.TECHNIQUE,
     "permittivity": permittivity.TECHNIQUE,
     "tension": tension.TECHNIQUE,

@@ -13,6 +13,7 @@ from pathlib import Path
 from pipeline.core.errors import ConfigError
 from pipeline.twin.breakdown import breakdown_part
 from pipeline.twin.compression import compression_part
+from pipeline.twin.handling import handling_part
 from pipeline.twin.nanoindentation import nanoindentation_part
 from pipeline.twin.part import SYNTHETIC, Part
 from pipeline.twin.permittivity import permittivity_part
@@ -32,6 +33,7 @@ PARTS: tuple[Callable[[int], Part], ...] = (
     breakdown_part,
     viscosity_part,
     nanoindentation_part,
+    handling_part,
 )
 
 _CAMPAIGN = """\

@@ -40,6 +40,8 @@ class TrueValue:
     key : property key of `core.properties`
     material, age : what it holds for
     value, unit : in SI
+    temperature_K : where it holds for one alone
+    lower_bound : all that is known is that the truth is not below
     """
 
     key: str
@@ -47,6 +49,8 @@ class TrueValue:
     age: str
     value: float
     unit: str
+    temperature_K: float | None = None
+    lower_bound: bool = False
 
 
 @cache
