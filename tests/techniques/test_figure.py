@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from pipeline.core.records import Summary
-from pipeline.techniques import compression, tension
+from pipeline.techniques import compression, tension, viscosity
+from pipeline.techniques.viscosity.figure import draw
+from tests.techniques import runs
 from tests.techniques.curves import CYLINDER, STRIP, reduce
 
 STRAIN = np.arange(0.0, 0.3, 5e-4)
@@ -58,3 +60,16 @@ def test_stiff_curves_are_drawn_in_megapascal_and_refused_ones_without_a_line() 
     assert len(axes.lines) == 1
     assert axes.spans == []
     assert axes.labels["y"] == "nominal stress [MPa]"
+
+
+def test_viscosity_shows_every_reading_and_the_law_over_its_range() -> None:
+    hours = np.arange(0.25, 13.01, 0.25)
+    measured = runs.reduce(runs.newtonian(4.0 + 0.19 * hours, hours * runs.HOUR, seed=None))
+    axes = Axes()
+    draw(axes, [measured], viscosity.summarise([measured], runs.CONTEXT))
+    readings, law = axes.lines
+    assert readings[0] == pytest.approx(hours)
+    assert (law[0][0], law[0][-1]) == (1.0, 12.0)
+    assert law[1] == pytest.approx(4.0 + 0.19 * law[0])
+    assert axes.spans == [(1.0, 12.0)]
+    assert axes.labels == {"x": "time since mixing [h]", "y": "viscosity [Pa.s]"}

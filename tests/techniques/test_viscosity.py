@@ -84,7 +84,7 @@ def test_a_law_refuses_to_answer_outside_its_range() -> None:
 def test_the_smallest_polynomial_that_the_data_support_is_found(
     coefficients: tuple[float, ...], degree: int
 ) -> None:
-    true = np.polynomial.polynomial.polyval(TIMES / HOUR, coefficients)
+    true = np.asarray(np.polynomial.polynomial.polyval(TIMES / HOUR, coefficients), np.float64)
     measured = reduce(newtonian(true, TIMES, speed_rpm=1.5 if degree == 4 else 3.0), _wide_open())
     law = viscosity.summarise([measured], _wide_open()).laws[0]
     assert (law.kind, len(law.coefficients)) == ("polynomial", degree + 1)
@@ -230,7 +230,7 @@ def test_clocks_that_do_not_tell_the_time_since_mixing(
 ) -> None:
     columns = newtonian(line(TIMES), TIMES)
     columns[clock] = columns.pop("time_s")
-    assert reduce(columns, CONTEXT, **notes).refusals[0].reason == reason
+    assert reduce(columns, CONTEXT, 1, **notes).refusals[0].reason == reason
 
 
 def test_summer_time_ends_within_a_run() -> None:
@@ -267,7 +267,7 @@ def test_a_run_without_settings_that_ends_early_is_fitted_from_its_minimum() -> 
     assert abs(law.valid[0] - lowest) < 8
     assert law.valid[1] == 129.0
     assert "method-changed" in flag_names(measured)
-    assert law.diagnostics["relative_error"] < 0.02
+    assert float(str(law.diagnostics["relative_error"])) < 0.02
     assert "the run ends 399 s after mixing, before the window begins" in law.method
 
 
@@ -281,7 +281,7 @@ def test_several_runs_give_one_law_of_their_mean() -> None:
     levels = [law.diagnostics[f"level_of_run_{i}"] for i in (1, 2, 3)]
     assert levels == pytest.approx([0.98, 1.0, 1.02], abs=2e-3)
     assert law(HOUR).value == pytest.approx(4.19, rel=3e-3)
-    assert 2 <= (law.degrees_of_freedom or 0) < 30
+    assert 2 <= (law.degrees_of_freedom or 0.0) < 30
     reordered = viscosity.summarise(runs[::-1], CONTEXT)
     assert reordered.laws[0].coefficients == law.coefficients
     assert reordered.records == summary.records

@@ -67,9 +67,9 @@ def test_k_and_n_come_out_as_such_each_with_its_law() -> None:
     assert sum(whole.parts) == len(whole.coefficients) == len(whole.covariance)
     joined = laws["flow_consistency"].coefficients + laws["flow_index"].coefficients
     assert joined == whole.coefficients
-    k, n = laws["flow_consistency"](6 * HOUR), laws["flow_index"](6 * HOUR)
+    at_6_h = [laws[key](6 * HOUR).value for key in ("flow_consistency", "flow_index")]
     at = whole(6 * HOUR, 0.04)
-    assert at.value == pytest.approx(k.value * 0.04 ** (n.value - 1.0), rel=1e-12)
+    assert at.value == pytest.approx(at_6_h[0] * 0.04 ** (at_6_h[1] - 1.0), rel=1e-12)
 
 
 def test_one_surface_and_two_stages_are_both_told() -> None:
