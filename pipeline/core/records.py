@@ -271,7 +271,6 @@ class Law:
     def ci95(self, x: float, rate_per_s: float | None = None) -> tuple[float, float]:
         """Give the 95 % confidence interval of the law at x `[unit]`: Student's t."""
         from scipy.special import stdtrit  # reading a card must not cost it
-        from scipy.special import stdtrit
 
         found = self(x, rate_per_s)
         dof = 1e6 if self.degrees_of_freedom is None else min(self.degrees_of_freedom, 1e6)

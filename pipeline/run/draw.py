@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
+from pipeline.core.present import readable_conditions
 from pipeline.core.records import Measurement, Summary
 from pipeline.run.measure import Bench, Group
 from pipeline.techniques import TECHNIQUES
@@ -43,8 +44,10 @@ def figure_jobs(
     for g in groups:
         if TECHNIQUES[g.technique].figure is None or (g.summary and not g.measurements):
             continue
-        said = ", ".join(str(v) for _, v in g.conditions)
-        slug = "-".join([g.material, g.technique, *(str(v) for _, v in g.conditions)])
+        said = readable_conditions(dict(g.conditions)) if g.conditions else ""
+        slug = "-".join(
+            [g.material, g.technique, *said.split(", ")] if said else [g.material, g.technique]
+        )
         name = bench.config.name_of(g.material)
         title = f"{name}, {g.technique}" + (f", {said}" if said else "")
         job = FigureJob(

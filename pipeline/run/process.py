@@ -135,15 +135,16 @@ def _account(surveys: list[Survey], measured: list[Measured]) -> list[FileEntry]
     entries = {path: e for survey in surveys for path, e in survey.entries.items()}
     for one in measured:
         path, reduced = one.specimen.file, one.reduced
-        if path is None or reduced is None:
+        if reduced is None:
             continue
         if reduced.error is not None:
             error = reduced.error
+            path = path or error.path
             entries[path] = replace(
                 entries[path], status="rejected", reason=str(error),
                 line=error.line, column=error.column,
             )  # fmt: skip
-        elif reduced.measurement is not None and not reduced.measurement.values:
+        elif path and reduced.measurement and not reduced.measurement.values:
             why = "; ".join(f"{r.key}: {r.reason}" for r in reduced.measurement.refusals)
             entries[path] = replace(entries[path], status="refused", reason=why)
     return [entries[path] for path in sorted(entries)]

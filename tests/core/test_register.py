@@ -145,6 +145,8 @@ def test_one_bad_row_spoils_a_register_whose_rows_hang_together(row: str, messag
     with pytest.raises(RawFileError) as caught:
         _observations(f"m,a,22,0.5,1,none,\n{row}\nm,a,22,2,4,gap,\n")
     assert str(caught.value) == f"demo/handling/observations.csv, {message}"
+
+
 def test_a_note_may_begin_like_a_mass() -> None:
     (specimen,) = _read(_GOOD.replace("cup", "mass_flow")).specimens
     assert specimen.notes == {"mass_flow": "150 ml"}
