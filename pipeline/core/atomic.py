@@ -1,9 +1,14 @@
-"""Files that appear whole or not at all."""
+"""Files and folders that appear whole or not at all."""
 
 from __future__ import annotations
 
 import os
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+
+from pipeline.core.errors import ConfigError
 
 PART_SUFFIX = ".part"  # what a killed run may leave behind; nothing reads such files
 
@@ -45,3 +50,43 @@ def _synchronise_folder(folder: Path) -> None:
         os.fsync(descriptor)
     finally:
         os.close(descriptor)
+
+
+@contextmanager
+def whole_folder(place: Path) -> Iterator[Path]:
+    """Give an empty folder to fill; where nothing fails it takes the place of `place` in one step.
+
+    `place` is a link that leads to one of two hidden folders beside it. The one that it does not
+    lead to is filled, the link is turned, and the other one is removed: a reader finds the old
+    content or all of the new one.
+
+    Parameters
+    ----------
+    place : where readers look; its parent is made if it is not there
+
+    Raises
+    ------
+    ConfigError : something that is not such a link stands at `place`
+    """
+    if place.exists() and not place.is_symlink():
+        raise ConfigError(f"{place} is no link of this program; move it away and try again")
+    place.parent.mkdir(parents=True, exist_ok=True)
+    slots = [place.with_name(f".{place.name}-{side}") for side in ("a", "b")]
+    old = slots[0] if place.is_symlink() and place.readlink() == Path(slots[0].name) else slots[1]
+    new = slots[1] if old is slots[0] else slots[0]
+    shutil.rmtree(new, ignore_errors=True)  # what a run that was killed left behind
+    new.mkdir()
+    whole = False
+    try:
+        yield new
+        _synchronise_folder(new)
+        link = place.with_name(f".{place.name}{PART_SUFFIX}")
+        link.unlink(missing_ok=True)
+        link.symlink_to(new.name)
+        link.replace(place)
+        whole = True
+    finally:
+        if not whole:
+            shutil.rmtree(new, ignore_errors=True)
+    _synchronise_folder(place.parent)
+    shutil.rmtree(old, ignore_errors=True)

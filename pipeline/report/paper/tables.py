@@ -1,0 +1,90 @@
+"""Tables 3 and 4: handling times and electromechanical values beside those of the database."""
+
+from __future__ import annotations
+
+import re
+
+from pipeline.core.properties import REFERENCE_AGE
+from pipeline.core.records import Condition
+from pipeline.core.units import to_si
+from pipeline.materials.card import MaterialCard
+from pipeline.materials.database import Database
+from pipeline.report.paper import printed
+from pipeline.report.paper.entry import Entry
+from pipeline.report.paper.lookup import ask, material_entry, missing, of_record
+
+HANDLING = "handling_time"
+ROOM_C = (22.0, 3.0)  # of the article, and how far an unheated bed may be from it
+
+# row of Table 4 -> property key and conditions
+TABLE4: dict[str, tuple[str, dict[str, Condition]]] = {
+    "compressive_modulus_MPa": ("compressive_modulus", {"age": REFERENCE_AGE}),
+    "compressive_modulus_2_months_MPa": ("compressive_modulus", {"age": "2 months"}),
+    "tensile_modulus_MPa": ("tensile_modulus", {}),
+    "tensile_strength_MPa": ("tensile_strength", {}),
+    "elongation_percent": ("elongation_at_break", {}),
+    "relative_permittivity_10Hz": ("relative_permittivity", {"frequency_Hz": 10.0}),
+    "breakdown_strength_V_per_um": ("breakdown_strength", {}),
+}
+_BED = re.compile(r"(?P<material>.+)-bed(?P<bed_C>\d+)C")
+
+
+def table4(database: Database) -> list[Entry]:
+    """Look every measured value of Table 4 up."""
+    return [
+        material_entry(database, f"table4.{material}.{row}", material, *TABLE4[row])
+        for material, rows in printed.part("table4").items()
+        for row in rows
+    ]
+
+
+def table3(database: Database) -> list[Entry]:
+    """Look every handling time of Table 3 up."""
+    return [_handling(database, name) for name in printed.part("table3")]
+
+
+def run_of(name: str) -> tuple[str, float | None]:
+    """Part a column of Table 3 into material and bed temperature `[degree Celsius]`."""
+    heated = _BED.fullmatch(name)
+    return (heated["material"], float(heated["bed_C"])) if heated else (name, None)
+
+
+def _handling(database: Database, name: str) -> Entry:
+    path = f"table3.{name}.hours"
+    material, bed_C = run_of(name)
+
+    def question(card: MaterialCard) -> Entry:
+        if bed_C is not None:
+            where: dict[str, Condition | None] = {"temperature_K": to_si(bed_C, "C")}
+        else:
+            where = _unheated(card)
+        return of_record(path, card, card.record(HANDLING, **where))
+
+    found = ask(database, material, question)
+    if isinstance(found, str):
+        return missing(path, found)
+    if printed.part(f"table3.{name}").keys() >= {"right_censored"}:
+        why = printed.part(f"table3.{name}.why")
+        return Entry(
+            *(found.id, found.printed, found.recomputed, found.unit, None),
+            f"printed as a lower bound ({why}); {found.note}",
+            found.synthetic,
+        )
+    return found
+
+
+def _unheated(card: MaterialCard) -> dict[str, Condition | None]:
+    """Find the bed temperature of the record that was printed at the temperature of the room."""
+    room_C, within_K = ROOM_C
+    near = [
+        record.conditions["temperature_K"]
+        for record in card.records
+        if record.key == HANDLING
+        and "temperature_K" in record.conditions
+        and isinstance(record.conditions["temperature_K"], float)
+        and abs(record.conditions["temperature_K"] - to_si(room_C, "C")) <= within_K
+    ]
+    if near:
+        return {"temperature_K": near[0]}
+    stated = any(r.key == HANDLING and "temperature_K" in r.conditions for r in card.records)
+    return {"temperature_K": None} if stated else {}
