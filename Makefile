@@ -5,10 +5,13 @@ PIP := $(BIN)/pip --disable-pip-version-check --quiet
 PYTHON ?= python3.11
 
 .DEFAULT_GOAL := help
-.PHONY: all test check bench help clean
+.PHONY: all paper test check bench help clean
 
 all: $(VENV)/.runtime  ## reprocess raw/ into processed/: read, fit, refuse, publish cards
 	@$(BIN)/deamat all
+
+paper: all  ## write processed/paper/: the article's numbers, printed beside recomputed
+	@$(BIN)/deamat paper
 
 test: $(VENV)/.dev  ## run the whole test suite
 	@$(BIN)/python -m pytest

@@ -166,6 +166,24 @@ def trace(
 
 
 @cli.command()
+@_folders
+@_json
+def paper(raw: Path | None, config: Path | None, processed: Path | None, as_json: bool) -> None:
+    """Write the article's tables and figures, printed beside recomputed, into processed/paper/."""
+    from pipeline.report.paper.entry import to_json
+    from pipeline.report.paper.write import write_paper
+
+    page, entries = write_paper(_where(raw, config, processed).processed)
+    if as_json:
+        click.echo(to_json(entries), nl=False)
+        return
+    known = sum(entry.recomputed is not None for entry in entries)
+    click.echo(f"paper      {page}: {known} of {len(entries)} printed numbers recomputed")
+    if any(entry.synthetic for entry in entries):
+        click.echo("SYNTHETIC  material values come from simulated files, not measurements")
+
+
+@cli.command()
 @click.argument("campaign")
 @_folders
 @click.option("--accept", is_flag=True, help="accept changed and missing files as well")

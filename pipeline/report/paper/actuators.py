@@ -30,10 +30,9 @@ _NOTES = {
         "t_p_opt": "does not come out (D6): the optimum of these inputs lies elsewhere",
         "optimum": "does not come out (D6): the curvature at the optimum of these inputs",
     },
-    "haghiashtiani_2018": {
-        name: f"{_LINEAR}, mean of the two electrodes"
-        for name in ("analytical", "t_p_opt", "optimum")
-    },
+    "haghiashtiani_2018": dict.fromkeys(
+        ("analytical", "t_p_opt", "optimum"), f"{_LINEAR}, mean of the two electrodes"
+    ),
 }
 
 
@@ -124,9 +123,7 @@ def bend(design: Design, law: StrainLaw | None = None) -> Bend:
     expansion = printed.value("text.poisson_ratio") * s
     best = float(best_passive_thickness(unimorph))
     at_best = replace(unimorph, passive_thickness_m=best)
-    return Bend(
-        float(multilayer(unimorph, expansion)), best, float(multilayer(at_best, expansion))
-    )
+    return Bend(float(multilayer(unimorph, expansion)), best, float(multilayer(at_best, expansion)))
 
 
 def table1() -> list[Entry]:
@@ -143,12 +140,12 @@ def table1() -> list[Entry]:
 
 
 def _columns(row: str, found: Bend, note: str, suffix: str = "") -> list[Entry]:
-    own_notes = _NOTES[row] if row in _NOTES else {}
+    own_notes = _NOTES.get(row, {})
     return [
         entry(
             f"table1.{row}.{name}",
             value,
-            own_notes[name] if name in own_notes else note,
+            own_notes.get(name, note),
             suffix=suffix,
         )
         for name, value in (

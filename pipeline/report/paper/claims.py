@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pipeline.actuator.elastica import deflect
 from pipeline.actuator.beam import Beam, actuate, deflection, displacement
+from pipeline.actuator.elastica import deflect
 from pipeline.actuator.figure_of_merit import (
     Unimorph,
     multilayer,

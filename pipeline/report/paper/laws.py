@@ -1,4 +1,4 @@
-r"""Table 2: viscosity laws, coefficient by coefficient and as curves, and the exponent of D3."""
+"""Table 2: viscosity laws, coefficient by coefficient and as curves, and the exponent of D3."""
 
 from __future__ import annotations
 
@@ -108,9 +108,7 @@ def reading(database: Database, material: str) -> Reading | str:
         low, high = hours_of(law)
         hours = np.linspace(low, high, 45)
         n = np.array([fitted(law, float(t), 1.0).value for t in hours])
-        e = polynomial(
-            printed.part(f"table2.{material}.printed_exponent_low_to_high"), hours
-        )
+        e = polynomial(printed.part(f"table2.{material}.printed_exponent_low_to_high"), hours)
         off = {
             name: float(np.sqrt(np.mean(np.square(read(e) - n)))) for name, read in READINGS.items()
         }
@@ -208,11 +206,13 @@ def _beside(
     path: str, card: MaterialCard, law: Law, values: FloatArray, u: FloatArray, how: str = ""
 ) -> list[Entry]:
     entries = []
+    degree = len(values) - 1
+    if degree >= len(list(printed.numbers(path))):
+        how += f"the data support degree {degree}; "
     for i, (place, number) in enumerate(printed.numbers(path)):
         if law.kind != POLYNOMIAL:
             entries.append(missing(place, f"the data support a law of another form: {law.kind}"))
         elif i >= len(values):
-            degree = len(values) - 1
             entries.append(
                 missing(place, f"the data support degree {degree}; see the row of the curve")
             )

@@ -25,7 +25,9 @@ def ask(database: Database, material: str, question: Callable[[MaterialCard], T]
     try:
         return question(database[material])
     except MissingProperty as error:
-        return str(error)
+        return str(error).partition("; there is ")[
+            0
+        ]  # what else the card holds is beside the point
 
 
 def is_synthetic(card: MaterialCard, campaign: str) -> bool:

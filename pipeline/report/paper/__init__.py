@@ -1,0 +1,1 @@
+"""The article's tables and figures, printed values beside recomputed ones, as one page."""

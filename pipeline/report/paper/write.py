@@ -1,0 +1,119 @@
+"""Writes `processed/paper/`: the page, its numbers and its figures, whole or not at all."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from pipeline.core.atomic import whole_folder, write_atomically
+from pipeline.materials.database import Database, open_database
+from pipeline.report.figures import technique_figure
+from pipeline.report.paper import printed
+from pipeline.report.paper.actuator_figures import ACTUATOR_FIGURES
+from pipeline.report.paper.actuators import table1, table5, totals
+from pipeline.report.paper.claims import figures
+from pipeline.report.paper.discrepancies import discrepancies
+from pipeline.report.paper.entry import CORRECTED, Entry, to_json
+from pipeline.report.paper.laws import Reading, is_fluid, reading, table2
+from pipeline.report.paper.material_figures import material_figures
+from pipeline.report.paper.page import Picture, render
+from pipeline.report.paper.tables import table3, table4
+
+FOLDER = "paper"
+_INPUTS = {
+    "table1": "input, or measured in the cited work",
+    "table4_manufacturer": "data sheet of the manufacturer, no campaign measures it",
+    "table5": "input",
+    "figure3": "against the experiment, whose shapes are not published",
+}
+_EXPERIMENT = "measured by the authors; an experiment is not recomputed"
+
+
+def write_paper(processed: Path) -> tuple[Path, list[Entry]]:
+    """Write `paper/` into the results.
+
+    Parameters
+    ----------
+    processed : folder with the database
+
+    Returns
+    -------
+    the page and its numbers
+
+    Raises
+    ------
+    DatabaseError : there is no database
+    ConfigError : something else stands where the folder goes
+    """
+    with open_database(processed) as database:
+        place = processed / FOLDER
+        with whole_folder(place) as folder:
+            entries = _write(database, folder)
+    return place / "index.html", entries
+
+
+def collect(database: Database) -> list[Entry]:
+    """Give every printed number its row, in the order of `printed.toml`."""
+    found = [
+        *table1(),
+        *table2(database),
+        *table3(database),
+        *table4(database),
+        *table5(),
+        *figures(),
+        *totals(),
+    ]
+    by_id = {entry.id: entry for entry in found}
+    rows: list[Entry] = []
+    seen: set[str] = set()
+    for path, number in printed.numbers():
+        law = ".".join(path.split(".")[:2])
+        own = by_id[path] if path in by_id else _input(path, number)
+        for row in (by_id.get(law), own, by_id.get(path + CORRECTED)):
+            if row is not None and row.id not in seen:
+                seen.add(row.id)
+                rows.append(row)
+    return rows
+
+
+def _input(path: str, number: float) -> Entry:
+    table = path.partition(".")[0]
+    if path.endswith((".measured", ".curvature_per_m")):
+        note = _EXPERIMENT
+    else:
+        note = _INPUTS.get(table, "input")
+    return Entry(path, number, None, printed.unit(path), None, f"{note}; used as printed")
+
+
+def _write(database: Database, folder: Path) -> list[Entry]:
+    entries = collect(database)
+    by_id = {entry.id: entry for entry in entries}
+    readings = {m: reading(database, m) for m in printed.part("table2") if is_fluid(m)}
+    pictures = _draw(database, folder, by_id, readings)
+    page = render(by_id, pictures, discrepancies(list(readings.values())))
+    write_atomically(folder / "index.html", page)
+    write_atomically(folder / "paper.json", to_json(entries))
+    return entries
+
+
+def _draw(
+    database: Database,
+    folder: Path,
+    entries: Mapping[str, Entry],
+    readings: Mapping[str, Reading | str],
+) -> dict[str, Picture]:
+    # One simulated campaign marks every figure that could show a curve of it.
+    synthetic = any(entry.synthetic for entry in entries.values())
+    drawn = [
+        *((name, *figure, False) for name, figure in ACTUATOR_FIGURES.items()),
+        *(
+            (name, *figure, synthetic)
+            for name, figure in material_figures(database, entries, readings).items()
+        ),
+    ]
+    pictures = {}
+    for name, title, draw, marked in drawn:
+        svg, _ = technique_figure(folder / "figures", name, title, draw, marked)
+        text = svg.read_text(encoding="utf-8")
+        pictures[name] = Picture(title, text[text.index("<svg") :], marked)
+    return pictures
