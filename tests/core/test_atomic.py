@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.core.atomic import write_atomically
+from pipeline.core.atomic import whole_folder, write_atomically
 
 
 def test_writes_the_bytes_and_makes_the_folder(tmp_path: Path) -> None:
@@ -106,3 +106,24 @@ def test_writers_at_the_same_time_never_mix_their_bytes(tmp_path: Path) -> None:
         thread.join()
     assert target.read_bytes() in contents
     assert [p.name for p in tmp_path.iterdir()] == ["card.json"]
+
+
+def test_a_folder_takes_the_place_of_the_old_one_in_one_step(tmp_path: Path) -> None:
+    place = tmp_path / "paper"
+    for content in ("one", "two", "three"):
+        with whole_folder(place) as folder:
+            (folder / "page").write_text(content)
+            assert not place.exists() or (place / "page").read_text() != content
+        assert (place / "page").read_text() == content
+    assert len(list(tmp_path.iterdir())) == 2  # the link and what it leads to
+
+
+def test_a_folder_that_fails_leaves_the_old_one(tmp_path: Path) -> None:
+    place = tmp_path / "paper"
+    with whole_folder(place) as folder:
+        (folder / "page").write_text("old")
+    with pytest.raises(KeyboardInterrupt), whole_folder(place) as folder:  # noqa: PT012  # halfway
+        (folder / "page").write_text("new")
+        raise KeyboardInterrupt
+    assert (place / "page").read_text() == "old"
+    assert len(list(tmp_path.iterdir())) == 2

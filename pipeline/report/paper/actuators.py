@@ -238,7 +238,7 @@ def _with(design: Design, which: str, value: Reals) -> Design:
 
 
 def electrode_that_sums_up(name: str) -> float:
-    """Give the electrode thickness that the total of Table 1 means for a design of Table 5 `[m]`."""
+    """Give the electrode thickness that a total of Table 1 means `[m]`."""
     u = own(name).unimorph
     total = to_si(printed.value(f"text.total_of_{name}_um"), "um")
     return float(total - u.passive_thickness_m - u.active_thickness_m) / 2.0

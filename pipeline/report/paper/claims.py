@@ -31,7 +31,7 @@ from pipeline.report.paper import printed
 from pipeline.report.paper.actuators import PASSIVE, own
 from pipeline.report.paper.entry import Entry, entry
 
-# Not printed. A strip of this length bends as moderately as the article says; a longer one does not.
+# Not printed. A strip of this length bends as moderately as the article says, a longer one not.
 ASSUMED_LENGTH_m = 0.015
 _LONGER_m = 0.02
 ASSUMED_DENSITY_kg_m3 = 1030.0
@@ -241,7 +241,7 @@ def mixed(film: str, passive: str, passive_m: Reals | None = None) -> tuple[Unim
         design,
         active_modulus_Pa=printed.si(f"table4.{film}.compressive_modulus_MPa"),
         passive_modulus_Pa=printed.si(f"table4.{passive}.compressive_modulus_MPa"),
-        **({} if passive_m is None else {"passive_thickness_m": passive_m}),
+        passive_thickness_m=design.passive_thickness_m if passive_m is None else passive_m,
     )
     s = planar(
         printed.value(f"table4.{film}.relative_permittivity_10Hz"),

@@ -1,4 +1,4 @@
-"""D1 to D7: where the article contradicts itself or its inputs, each with the numbers that show it."""
+"""D1 to D7: where the article contradicts itself or its inputs, with the numbers that show it."""
 
 from __future__ import annotations
 
@@ -173,9 +173,9 @@ def _d7() -> Discrepancy:
         "Friction at the plates raises the compressive modulus",
         f"The article's cylinder, {diameter:g} mm by {height:g} mm, has the shape factor D/(4h) = "
         f"{shape:.2f}. Bonded between its plates it would seem about 1 + 2 S² = "
-        f"{1 + 2 * shape**2:.2f} times as stiff; free to slide, not at all. Neither the article nor "
-        "this table corrects for it: the moduli are apparent ones, slopes over 0-5 % in compression "
-        "and 0-1 % in tension.",
+        f"{1 + 2 * shape**2:.2f} times as stiff; free to slide, not at all. Neither the article "
+        "nor this table corrects for it: the moduli are apparent ones, slopes over 0-5 % in "
+        "compression and 0-1 % in tension.",
         ("table4", "figure9"),
     )
 

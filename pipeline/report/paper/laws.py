@@ -89,6 +89,19 @@ def hours_of(law: Law) -> tuple[float, float]:
     return max(low, HOURS[0]), min(high, HOURS[1])
 
 
+def rates_of(law: Law) -> tuple[float, float] | None:
+    """Give the shear rates between which a power-law fluid is known `[1/s]`; else None."""
+    rates: tuple[float, float] | None = getattr(law, "rates", None)
+    return rates if law.kind == FLUID else None
+
+
+def rate_for(law: Law | None) -> float:
+    """Give the rate at which laws are compared: the article's, or the nearest that a law knows."""
+    nominal = printed.si("text.nominal_shear_rate_per_s")
+    known = None if law is None else rates_of(law)
+    return nominal if known is None else min(max(nominal, known[0]), known[1])
+
+
 def _per_hour(law: Law) -> float:
     return si_factor("h")[1] / si_factor(law.argument_unit)[1]
 
@@ -139,7 +152,6 @@ def table2(database: Database) -> list[Entry]:
 def _curve(database: Database, material: str) -> Entry:
     """Hold the curves against each other where they differ most."""
     path = f"table2.{material}"
-    rate = printed.si("text.nominal_shear_rate_per_s")
     found_reading = reading(database, material) if is_fluid(material) else ""
     name = found_reading.name if isinstance(found_reading, Reading) else PLAUSIBLE
 
@@ -148,12 +160,13 @@ def _curve(database: Database, material: str) -> Entry:
         low, high = hours_of(law)
         if low >= high:
             return f"the law holds outside {HOURS[0]:g} h to {HOURS[1]:g} h"
+        rate = rate_for(law)
         hours = np.linspace(low, high, round((high - low) / _STEP_h) + 1)
         then = printed_viscosity(material, hours, np.full_like(hours, rate), name)
         now = [fitted(law, float(t), rate) for t in hours]
         off = np.array([q.value for q in now]) / then - 1.0
         at = int(np.argmax(np.abs(off)))
-        how = f"read as {name}, at {rate:g} 1/s; " if is_fluid(material) else ""
+        how = f"read as {name}, at {rate:.3g} 1/s; " if is_fluid(material) else ""
         return Entry(
             path,
             float(then[at]),

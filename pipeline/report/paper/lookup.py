@@ -19,7 +19,7 @@ SYNTHETIC = "SYNTHETIC: simulated, not measured"
 
 
 def ask(database: Database, material: str, question: Callable[[MaterialCard], T]) -> T | str:
-    """Ask the card of a material; where there is no answer say why, with the reasons of refusals."""
+    """Ask the card of a material; say why there is no answer, with the reasons of refusals."""
     if material not in database:
         return f"the database has no material {material}"
     try:
@@ -31,7 +31,7 @@ def ask(database: Database, material: str, question: Callable[[MaterialCard], T]
 
 
 def is_synthetic(card: MaterialCard, campaign: str) -> bool:
-    """Say whether a campaign of a card is simulated; one that is not credited counts as the card."""
+    """Say whether a campaign of a card is simulated; one without credit counts as the card."""
     marks = [credit.synthetic for credit in card.campaigns if credit.campaign == campaign]
     return any(marks) if marks else card.synthetic
 

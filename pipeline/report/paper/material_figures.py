@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
@@ -18,7 +19,6 @@ from pipeline.materials.database import Database, MissingMaterial
 from pipeline.report.paper import printed
 from pipeline.report.paper.entry import Entry
 from pipeline.report.paper.laws import (
-    FLUID,
     FOOTNOTE,
     HOURS,
     PLAUSIBLE,
@@ -29,6 +29,8 @@ from pipeline.report.paper.laws import (
     hours_of,
     is_fluid,
     printed_viscosity,
+    rate_for,
+    rates_of,
 )
 from pipeline.report.style import COLOURS
 
@@ -63,15 +65,20 @@ def viscosity_law(database: Database, material: str) -> Law | None:
 
 def figure8a(axes: Axes, database: Database, readings: Mapping[str, Reading | str]) -> None:
     """Draw the printed laws and the fitted ones with their 95 % band over 1 to 12 h."""
-    rate = printed.si("text.nominal_shear_rate_per_s")
     hours = np.linspace(*HOURS, _TIMES_h)
     for colour, material in zip(COLOURS, printed.part("table2"), strict=False):
         name = _reading_of(readings, material)
+        law = viscosity_law(database, material)
+        rate = rate_for(law)
+        at_rate = f" at {rate:.2g} 1/s" if is_fluid(material) else ""
         there = printed_viscosity(material, hours, np.full_like(hours, rate), name)
         axes.plot(
-            hours, there, color=colour, linestyle="--", label=f"{title_of(material)}, printed"
+            hours,
+            there,
+            color=colour,
+            linestyle="--",
+            label=f"{title_of(material)}, printed{at_rate}",
         )
-        law = viscosity_law(database, material)
         if law is None:
             continue
         low, high = hours_of(law)
@@ -84,7 +91,7 @@ def figure8a(axes: Axes, database: Database, readings: Mapping[str, Reading | st
         )
         axes.fill_between(times, values - 2 * u, values + 2 * u, color=colour, alpha=0.2, lw=0)
     axes.set_yscale("log")
-    axes.set_xlabel("time since mixing [h]; Sylgard 186 at 0.27 1/s; bands: ± 2 u")
+    axes.set_xlabel("time since mixing [h]; bands: ± 2 u")
     axes.set_ylabel("viscosity [Pa.s]")
 
 
@@ -106,9 +113,10 @@ def figure8b(axes: Axes, database: Database) -> None:
                 label=f"{title_of(material)}, printed, {name}{footnote}",
             )  # fmt: skip
         law = viscosity_law(database, material)
-        if law is None or law.kind != FLUID:
+        known = None if law is None else rates_of(law)
+        if law is None or known is None or not hours_of(law)[0] <= _AT_h <= hours_of(law)[1]:
             continue
-        held = _rates_held(law, rates)
+        held = np.geomspace(*known, 20)
         found = [fitted(law, _AT_h, float(rate)).value for rate in held]
         axes.plot(
             held, found, color=colour, linestyle="-", linewidth=3.0,
@@ -118,12 +126,6 @@ def figure8b(axes: Axes, database: Database) -> None:
     axes.set_yscale("log")
     axes.set_xlabel("shear rate [1/s]")
     axes.set_ylabel(f"viscosity {_AT_h:g} h after mixing [Pa.s]")
-
-
-def _rates_held(law: Law, rates: np.ndarray) -> np.ndarray:
-    """Give the rates at which a law answers; a power-law fluid knows its own range."""
-    low, high = getattr(law, "rates", None) or (rates[0], rates[-1])
-    return np.geomspace(low, high, 20)
 
 
 # --- Figure 9
@@ -197,12 +199,12 @@ def draw_pairs(
     at = np.arange(len(rows))[::-1]
     known = [(y, e) for y, (_, e) in zip(at, rows, strict=True) if e.recomputed is not None]
     axes.plot(
-        [e.printed for _, e in rows], at, marker="D", markersize=7, markerfacecolor="none",
+        [_number(e.printed) for _, e in rows], at, marker="D", markersize=7, markerfacecolor="none",
         color="black", linestyle="none", label="printed",
     )  # fmt: skip
     if known:
         axes.errorbar(
-            [e.recomputed for _, e in known], [y for y, _ in known],
+            [_number(e.recomputed) for _, e in known], [y for y, _ in known],
             xerr=[2.0 * (e.standard_uncertainty or 0.0) for _, e in known],
             fmt="o", color=COLOURS[0], capsize=3, label="recomputed, ± 2 u",
         )  # fmt: skip
@@ -225,6 +227,10 @@ def draw_pairs(
         axes.margins(x=0.25)
 
 
+def _number(value: float | None) -> float:
+    return math.nan if value is None else value
+
+
 def material_figures(
     database: Database, entries: Mapping[str, Entry], readings: Mapping[str, Reading | str]
 ) -> dict[str, tuple[str, Draw]]:
@@ -237,7 +243,7 @@ def material_figures(
     )
     return {
         "figure-8a": (
-            "Figure 8: viscosity after mixing",
+            "Figure 8A: viscosity after mixing",
             partial(figure8a, database=database, readings=readings),
         ),
         "figure-8b": (

@@ -1,4 +1,4 @@
-"""The numbers that the article prints, by dotted path: `table4.sylgard-182-10to1.tensile_modulus_MPa`."""
+"""The numbers that the article prints, by dotted path such as `table3.sylgard-184-10to1.hours`."""
 
 from __future__ import annotations
 
