@@ -70,7 +70,8 @@ def test_the_data_choose_the_reading(
 ) -> None:
     monkeypatch.setattr(laws, "INDEX", "viscosity")  # any polynomial law can play the index
     e = np.array(printed.part(f"table2.{FLUID}.printed_exponent_low_to_high"))
-    n = {"e = n": e, "e = 1 - n": [1 - e[0], -e[1]], "e = n - 1": [1 + e[0], e[1]]}[name]
+    sign, offset = {"e = n": (1, 0), "e = 1 - n": (-1, 1), "e = n - 1": (1, 1)}[name]
+    n = sign * e + offset * np.eye(1, len(e))[0]
     with fluid(tmp_path, [float(c) for c in n]) as opened:
         found = reading(opened, FLUID)
         rows = {r.id: r for r in laws.table2(opened)}
