@@ -56,6 +56,7 @@ def test_a_rejected_file_ends_with_one_and_its_place(folders: Folders) -> None:
         (("all", "--workers", "0"), "0 is not in the range x>=1"),
         (("alll",), "No such command 'alll'"),
         (("card", "sylgard-182-10to1"), "no database"),
+        (("paper",), "no database"),
         (("register", "nowhere"), "nowhere is no campaign: it has no campaign.toml"),
     ],
 )

@@ -63,7 +63,7 @@ def to_json(entries: Iterable[Entry]) -> bytes:
     rows = [
         {
             "id": e.id,
-            "printed": e.printed,
+            "printed": _short(e.printed),
             "recomputed": _short(e.recomputed),
             "unit": e.unit,
             "standard_uncertainty": _short(e.standard_uncertainty),

@@ -83,13 +83,16 @@ def of_record(path: str, card: MaterialCard, record: PropertyRecord) -> Entry:
         from_si(record.quantity.value, unit),
         unit,
         u or None,
-        f"{provenance(card, record)}; n = {record.n}, {_interval(record.ci95, unit)}",
+        f"{provenance(card, record)}; n = {record.n}, {_interval(record.ci95, unit, u)}",
         is_synthetic(card, record.campaign),
     )
 
 
-def _interval(ci95: tuple[float, float], unit: str) -> str:
+def _interval(ci95: tuple[float, float], unit: str, u: float) -> str:
     low, high = (from_si(end, unit) for end in ci95)
+    written = "" if unit == "1" else f" {unit}"
     if math.isinf(high):
-        return f"a lower bound: above {low:.4g} {unit}"
-    return f"95 % interval {low:.4g} to {high:.4g} {unit}"
+        return f"a lower bound: above {low:.4g}{written}"
+    # A value that was only seen to lie between two observations has no distribution.
+    kind = "95 % interval" if u else "seen to lie within"
+    return f"{kind} {low:.4g} to {high:.4g}{written}"

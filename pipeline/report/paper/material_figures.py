@@ -102,7 +102,7 @@ def _reading_of(readings: Mapping[str, Reading | str], material: str) -> str:
 
 def figure8b(axes: Axes, database: Database) -> None:
     """Draw the three readings of the printed exponent against shear rate, and the data's law."""
-    rates = np.geomspace(0.1, 100.0, 60)
+    rates = np.geomspace(0.02, 100.0, 60)
     fluids = [m for m in printed.part("table2") if is_fluid(m)]
     for colour, material in zip(COLOURS, fluids, strict=False):
         for look, name in zip(("--", "-.", ":"), READINGS, strict=True):

@@ -103,7 +103,7 @@ def with_uncertainty(value: float, u: float | None) -> str:
 
 def plain(value: float | None) -> str:
     """Write a number as it is printed."""
-    return "-" if value is None else f"{value:.6g}"
+    return "" if value is None else f"{value:.5g}"
 
 
 def cell(entry: Entry, corrected: Entry | None = None) -> Cell:
@@ -114,9 +114,12 @@ def cell(entry: Entry, corrected: Entry | None = None) -> Cell:
         said = "not in the database" if state == "missing" else ""
         return Cell(plain(entry.printed), said, "", state, why)
     state, difference = _difference(entry)
+    observed = entry.id.startswith("table3.")  # a time that was written down, not computed
     return Cell(
         plain(entry.printed),
-        with_uncertainty(entry.recomputed, entry.standard_uncertainty),
+        plain(entry.recomputed)
+        if observed
+        else with_uncertainty(entry.recomputed, entry.standard_uncertainty),
         difference,
         state,
         entry.note,
@@ -263,7 +266,7 @@ def _formula(path: str, values: Mapping[str, float | None]) -> str:
         mine = [v for p, v in values.items() if p.split(".")[2] == row]
         if mine:
             sides.append(_polynomial(mine))
-    return sides[0] if len(sides) == 1 else f"({sides[0]}) · rate^({sides[1]}, see D3)"
+    return sides[0] if len(sides) == 1 else f"({sides[0]}) · rate^({sides[1]}) (D3)"
 
 
 def _polynomial(coefficients: Sequence[float | None]) -> str:

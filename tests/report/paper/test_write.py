@@ -121,7 +121,7 @@ def test_every_number_of_the_shared_facts_has_its_row(rows: Rows, shared: Path) 
             "unit": "h",
             "standard_uncertainty": None,
             "note": "SYNTHETIC: simulated, not measured; campaign twin-1; n = 5, "
-            "95 % interval 11 to 11.5 h",
+            "seen to lie within 11 to 11.5 h",
         },
         {
             "id": "table4.sylgard-182-20to1.tensile_modulus_MPa",
