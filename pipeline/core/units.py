@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import difflib
 import math
+import re
 
-from pipeline.core.errors import PipelineError
+from pipeline.core.errors import ConfigError, PipelineError
 
 _KELVIN_AT_0_C = 273.15
 
@@ -110,6 +111,8 @@ _SPELLINGS = str.maketrans(
     {"\u00b5": "u", "\u03bc": "u", "\u00b2": "2", "\u00b3": "3", "\u00b0": "", "\u00b7": "."}
 )
 
+_WRITTEN = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(\D\S*)?\s*")
+
 
 class UnknownUnit(PipelineError):
     """A unit that the closed table does not hold."""
@@ -147,3 +150,33 @@ def from_si(value: float, unit: str) -> float:
     """Convert an SI value to the unit asked for (the edge towards exports and report)."""
     _, factor, offset = si_factor(unit)
     return (value - offset) / factor
+
+
+
+
+def read_quantity(text: str, si_unit: str, what: str) -> float:
+    """Read a number that people write with its unit, such as `500um`, into SI `[si_unit]`.
+
+    Parameters
+    ----------
+    text : number and unit, with or without a space
+    si_unit : the SI unit that it must come to: `"m"` for a length
+    what : whose value it is, for the message
+
+    Raises
+    ------
+    ConfigError : not a number, a bare number (it is ambiguous), a unit of something else
+    UnknownUnit : the unit is not in the table
+    """
+    allowed = ", ".join(sorted(u for u, (si, _, _) in UNITS.items() if si == si_unit))
+    found = _WRITTEN.fullmatch(text)
+    if not found:
+        raise ConfigError(f"{what} is {text!r}; give a number with its unit ({allowed})")
+    number, unit = found.groups()
+    if unit is None:
+        raise ConfigError(
+            f"{what} is {text!r}: a bare number is ambiguous; give it with its unit ({allowed})"
+        )
+    if si_factor(unit)[0] != si_unit:
+        raise ConfigError(f"{what} is {text!r}: {unit} does not fit; give it in {allowed}")
+    return to_si(float(number), unit)
