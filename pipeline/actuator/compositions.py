@@ -15,6 +15,7 @@ from pipeline.actuator.design import Bound, Request, allowed_for, choose_voltage
 from pipeline.actuator.ingredients import Ingredients, gather, strip_of
 from pipeline.actuator.strip import (
     Allowed,
+    Floats,
     Strip,
     best_passive,
     blocked_force,
@@ -23,7 +24,6 @@ from pipeline.actuator.strip import (
     pull_in_limit,
     true_field,
 )
-from pipeline.actuator.uncertainty import Floats
 from pipeline.core.errors import MissingProperty, OutOfRange, PipelineError
 from pipeline.core.units import to_si
 from pipeline.materials.card import MaterialCard
@@ -143,12 +143,12 @@ def pareto(cards: Cards, declared: Designs, request: Request) -> tuple[Trade, ..
             reason = str(error)
     if not tops:
         raise MissingProperty(f"no pair of materials can be driven: {reason}")
-    grid = max(top for _, top in tops) * np.arange(1, _VOLTAGES + 1) / _VOLTAGES
+    grid = max(top for _, top in tops) * (np.arange(1, _VOLTAGES + 1) / _VOLTAGES)
     size = declared.geometry
     length_m, width_m = to_si(size.length_mm, "mm"), to_si(size.width_mm, "mm")
     candidates: list[Trade] = []
     for pair, top in tops:
-        candidates += _trades(pair, grid[grid <= top * (1 + 1e-12)], length_m, width_m)
+        candidates += _trades(pair, grid[grid <= top], length_m, width_m)
     return tuple(_unbeaten(candidates))
 
 

@@ -1,4 +1,4 @@
-"""`config/designs.toml`: what a design takes from no card, each with its source; nothing in code."""
+"""`config/designs.toml`: what a design takes from no card, each with its source."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import difflib
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Literal
+from typing import Literal, TypeVar
 
 from pydantic import Field
 
@@ -16,6 +16,8 @@ from pipeline.core.errors import ConfigError
 from pipeline.core.instruments import Declared
 
 DESIGNS_FILE = "designs.toml"
+
+T = TypeVar("T")
 
 
 class Sourced(Declared):
@@ -111,7 +113,7 @@ class Designs(Declared):
         return _named(self.designs, name, "design")
 
 
-def _named(known: Mapping[str, Electrode] | Mapping[str, Wanted], key: str, what: str):  # type: ignore[no-untyped-def]
+def _named(known: Mapping[str, T], key: str, what: str) -> T:
     if key not in known:
         near = difflib.get_close_matches(key, known, n=3) or sorted(known)
         raise ConfigError(

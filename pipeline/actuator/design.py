@@ -15,6 +15,7 @@ from pipeline.actuator.next_test import TestValue, next_tests
 from pipeline.actuator.ranges import Reals, check, within
 from pipeline.actuator.strip import (
     Allowed,
+    Floats,
     Strip,
     best_passive,
     blocked_force,
@@ -29,7 +30,6 @@ from pipeline.actuator.strip import (
 from pipeline.actuator.uncertainty import (
     Bar,
     FirstOrder,
-    Floats,
     Input,
     MonteCarlo,
     Response,
@@ -185,9 +185,7 @@ def design(cards: Mapping[str, MaterialCard], declared: Designs, request: Reques
     prediction = first_order(inputs, response)
     chance, interval = _failure(strip, found, declared, electrode, voltage, allowed)
     size = declared.geometry
-    force = blocked_force(
-        strip, voltage, to_si(size.length_mm, "mm"), to_si(size.width_mm, "mm")
-    )
+    force = blocked_force(strip, voltage, to_si(size.length_mm, "mm"), to_si(size.width_mm, "mm"))
     return Design(
         request, found, electrode, strip, inputs, best, voltage, bound, allowed,
         float(pull_in_limit(strip, allowed)),
@@ -245,10 +243,10 @@ def choose_voltage(
 
 
 def respond(strip: Strip, at: float | Allowed) -> Response:
-    """Give the curvature as a function of the inputs, at a voltage or at the highest allowed one."""
+    """Give the curvature by the inputs, at a voltage or at the highest allowed one."""
 
     def response(values: Mapping[str, Floats]) -> Reals:
-        moved = replace(strip, **values)
+        moved = strip.moved(values)
         voltage = highest_voltage(moved, at) if isinstance(at, Allowed) else at
         return curvature_or_nan(moved, voltage)
 
@@ -268,7 +266,7 @@ def _failure(
     if found.strength is None:
         return None, None
     inputs = inputs_of(found, strip, declared, electrode, breakdown=True)
-    drawn = replace(strip, **sample(inputs, _DRAWS, seed=1))
+    drawn = strip.moved(sample(inputs, _DRAWS, seed=1))
     chances = failure_probability(drawn, voltage_V, allowed.area_ratio)
     low, high = np.quantile(chances, (0.025, 0.975))
     return float(failure_probability(strip, voltage_V, allowed.area_ratio)), (
@@ -328,7 +326,7 @@ def _notes(
             "by Monte Carlo"
         )
     notes.append(
-        f"Young's modulus is the {declared.model.modulus}; in-plane rule {declared.model.in_plane}; "
-        "curvature without weight"
+        f"Young's modulus is the {declared.model.modulus}; "
+        f"in-plane rule {declared.model.in_plane}; curvature without weight"
     )
     return tuple(notes)

@@ -116,7 +116,7 @@ def strip_of(
     film_thickness_m: float,
     passive_thickness_m: float,
 ) -> Strip:
-    """Put values of cards and declared facts together; layers outside `RANGES` are refused later."""
+    """Put values of cards and declared facts together."""
     return Strip(
         film_modulus_Pa=found.film_modulus.quantity.value,
         relative_permittivity=found.permittivity.quantity.value,
@@ -181,9 +181,7 @@ def _measured(record: PropertyRecord, field: str) -> Input:
         for c in lines
     )
     test = f"{technique} of {record.material}"
-    return Input(
-        name, (field,), record.quantity.value, record.quantity.unit, told, test, record.n
-    )
+    return Input(name, (field,), record.quantity.value, record.quantity.unit, told, test, record.n)
 
 
 def _declared(name: str, field: str, strip: Strip, unit: str, u: float | None) -> Input:

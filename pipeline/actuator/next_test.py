@@ -72,9 +72,7 @@ def next_tests(
     return tuple(sorted(values, key=lambda v: v.u_then))
 
 
-def plan(
-    inputs: Sequence[Input], prediction: FirstOrder, specimens: int
-) -> tuple[TestValue, ...]:
+def plan(inputs: Sequence[Input], prediction: FirstOrder, specimens: int) -> tuple[TestValue, ...]:
     """Give the order in which so many specimens are best tested, one at a time, greedily."""
     within("specimens", specimens, 1, 1000)
     steps = []
@@ -93,4 +91,3 @@ def plan(
 def _after(inputs: Sequence[Input], prediction: FirstOrder, test: str, further: int) -> float:
     grown = [x.after(further) if x.test == test else x for x in inputs]
     return combined(grown, prediction.gradient)
-

@@ -23,26 +23,17 @@ _BOUNDS = {
 
 def design_text(design: Design) -> str:
     """Write a design for people: what to make, how far it bends, what dominates, what to test."""
-    r, strip, p, mc = design.request, design.strip, design.prediction, design.draws
+    r, strip = design.request, design.strip
     lines = [f"Design: {r.de} on {r.passive}, electrodes {design.electrode.name}"]
     lines += synthetic_lines(design)
     lines += ["", *_facts(design)]
-    lines += [
-        "",
-        f"curvature   {p.value:.4g} ± {p.u:.2g} 1/m to first order"
-        + ("" if p.holds else ", which does not hold here"),
-        f"            {mc.mean:.4g} ± {mc.sd:.2g} 1/m, 95 % from {mc.interval95[0]:.4g} to "
-        f"{mc.interval95[1]:.4g} 1/m by Monte Carlo ({mc.draws} draws, "
-        f"{100 * mc.pull_in_probability:.2g} % pull in)",
-        f"force       {from_si(design.blocked_force_N, 'uN'):.3g} uN blocked at the tip",
-    ]
+    lines += ["", *_answer(design)]
     if strip.passive_thickness_m != design.best_passive_thickness_m:
-        lines.append(
-            f"optimum     a passive layer of {from_si(design.best_passive_thickness_m, 'um'):.4g} um"
-            " would bend most"
-        )
+        best_um = from_si(design.best_passive_thickness_m, "um")
+        lines.append(f"optimum     a passive layer of {best_um:.4g} um would bend most")
     lines += ["", "What dominates"]
-    lines += aligned([("input", "u of curvature", "elasticity"), *map(_bar_row, design.tornado)], "  ")
+    bars = [("input", "u of curvature", "elasticity"), *map(_bar_row, design.tornado)]
+    lines += aligned(bars, "  ")
     lines += ["", "Next best test (one further specimen)"]
     rows = [("test", "n", "narrows by", "at best by")]
     for t in design.next_tests:
@@ -208,13 +199,14 @@ def _facts(design: Design) -> list[str]:
         ("electrode", strip.electrode_thickness_m),
     )
     made = ", ".join(f"{name} {from_si(float(t), 'um'):.4g} um" for name, t in layers)
-    field = from_si(design.points[-1].true_field_V_m, "V/um")
+    field_V_um = from_si(design.points[-1].true_field_V_m, "V/um")
+    voltage_kV, limit_kV = (from_si(v, "kV") for v in (design.voltage_V, design.pull_in_limit_V))
+    part = f"{100 * design.allowed.pull_in_fraction:g} %"
+    why = _BOUNDS[design.bound]
     lines = [
         f"layers      {made} (bottom to top)",
-        f"voltage     {from_si(design.voltage_V, 'kV'):.4g} kV, {_BOUNDS[design.bound]}; "
-        f"{field:.3g} V/um on the thinned film",
-        f"pull-in     {100 * design.allowed.pull_in_fraction:g} % of its voltage is "
-        f"{from_si(design.pull_in_limit_V, 'kV'):.4g} kV",
+        f"voltage     {voltage_kV:.4g} kV, {why}; {field_V_um:.3g} V/um on the thinned film",
+        f"pull-in     {part} of its voltage is {limit_kV:.4g} kV",
     ]
     chance, interval = design.failure_probability, design.failure_interval95
     if chance is None or interval is None:
@@ -225,6 +217,20 @@ def _facts(design: Design) -> list[str]:
             f"(95 % from {100 * interval[0]:.2g} to {100 * interval[1]:.2g} %)"
         )
     return lines
+
+
+def _answer(design: Design) -> list[str]:
+    p, mc = design.prediction, design.draws
+    low, high = mc.interval95
+    holds = "" if p.holds else ", which does not hold here"
+    drawn = f"{mc.draws} draws, {100 * mc.pull_in_probability:.2g} % pull in"
+    force_uN = from_si(design.blocked_force_N, "uN")
+    return [
+        f"curvature   {p.value:.4g} ± {p.u:.2g} 1/m to first order{holds}",
+        f"            {mc.mean:.4g} ± {mc.sd:.2g} 1/m, 95 % from {low:.4g} to {high:.4g} 1/m",
+        f"            by Monte Carlo ({drawn})",
+        f"force       {force_uN:.3g} uN blocked at the tip",
+    ]
 
 
 def _bar_row(bar: Bar) -> tuple[str, str, str]:

@@ -6,9 +6,11 @@ draws and designs cost one pass over arrays.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pipeline.actuator.figure_of_merit import Unimorph, active_part, multilayer
 from pipeline.actuator.optimum import best_passive_thickness
@@ -25,7 +27,7 @@ from pipeline.actuator.strain import (
 )
 from pipeline.core.errors import MissingProperty
 
-_WHERE = "the de layer"
+Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,6 +54,10 @@ class Strip:
     in_plane: InPlane
     breakdown_strength_V_m: Reals | None = None
     weibull_shape: Reals | None = None
+
+    def moved(self, values: Mapping[str, Floats]) -> Strip:
+        """Give the strip with arrays in place of some numbers, by field."""
+        return replace(self, **values)  # type: ignore[arg-type]  # none of them is `in_plane`
 
     def weibull(self) -> tuple[Reals, Reals]:
         """Give scale and shape of the breakdown, or say that they are not known."""
@@ -104,8 +110,9 @@ def curvature(strip: Strip, voltage_V: Reals) -> Reals:
 
     Source: `beam.actuate` with thinning; Sikulskyi et al. 2022, Eqs. 4-9.
     """
+    s = strip
     film_drive(
-        voltage_V, strip.film_thickness_m, strip.film_modulus_Pa, strip.relative_permittivity, _WHERE
+        voltage_V, s.film_thickness_m, s.film_modulus_Pa, s.relative_permittivity, "the de layer"
     )
     return _curvature(strip, voltage_V)
 
@@ -145,9 +152,7 @@ def blocked_force(strip: Strip, voltage_V: Reals, length_m: float, width_m: floa
 def true_field(strip: Strip, voltage_V: Reals) -> Reals:
     """Give the field on the thinned film, `V / (t0 (1 - s))` `[V/m]`; NaN where it pulls in."""
     field = voltage_V / strip.film_thickness_m
-    return np.where(
-        pulls_in(strip, voltage_V), np.nan, field / (1.0 - _thinning(strip, voltage_V))
-    )
+    return np.where(pulls_in(strip, voltage_V), np.nan, field / (1.0 - _thinning(strip, voltage_V)))
 
 
 def failure_probability(strip: Strip, voltage_V: Reals, area_ratio: float = 1.0) -> Reals:
@@ -166,7 +171,8 @@ def failure_probability(strip: Strip, voltage_V: Reals, area_ratio: float = 1.0)
     """
     scale, shape = strip.weibull()
     hazard = area_ratio * (true_field(strip, voltage_V) / scale) ** shape
-    return np.where(np.isnan(hazard), 1.0, -np.expm1(-hazard))
+    chance: Reals = np.where(np.isnan(hazard), 1.0, -np.expm1(-hazard))
+    return chance
 
 
 def breakdown_field(strip: Strip, allowed: Allowed) -> Reals:
@@ -180,7 +186,8 @@ def breakdown_field(strip: Strip, allowed: Allowed) -> Reals:
     """
     scale, shape = strip.weibull()
     hazard = -np.log1p(-allowed.breakdown_probability) / allowed.area_ratio
-    return scale * np.power(hazard, 1.0 / np.asarray(shape))
+    field: Reals = scale * np.power(hazard, 1.0 / np.asarray(shape))
+    return field
 
 
 def highest_voltage(strip: Strip, allowed: Allowed) -> Reals:

@@ -12,13 +12,12 @@ from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pipeline.actuator.ranges import Reals, within
+from pipeline.actuator.strip import Floats
 from pipeline.core.errors import FitRefused
 from pipeline.core.quantity import Contribution
 
-Floats = NDArray[np.float64]
 # From values by field of a `strip.Strip` (arrays of one shape) to the prediction, NaN where there
 # is none because the film pulls in.
 Response: TypeAlias = Callable[[Mapping[str, Floats]], Reals]
@@ -177,7 +176,8 @@ def monte_carlo(
     lost = 1.0 - good.size / draws
     if lost > 0.5:
         raise FitRefused(
-            f"{100 * lost:.0f} % of {draws} draws pull in: lower the voltage, or know the film better"
+            f"{100 * lost:.0f} % of {draws} draws pull in: "
+            "lower the voltage, or know the film better"
         )
     low, high = np.quantile(good, (0.025, 0.975))
     return MonteCarlo(
@@ -193,13 +193,12 @@ def sample(inputs: Sequence[Input], draws: int, seed: int) -> dict[str, Floats]:
     for x in inputs:
         error = np.zeros(draws)
         for c in x.budget:
-            if c.shared and c.source in shared:
-                z = shared[c.source]
-            else:
-                z = rng.standard_normal(draws)
-            if c.shared:
-                shared[c.source] = z
-            error += c.u * z
+            if not c.shared:
+                error += c.u * rng.standard_normal(draws)
+                continue
+            if c.source not in shared:
+                shared[c.source] = rng.standard_normal(draws)
+            error += c.u * shared[c.source]
         sigma = math.sqrt(math.log1p((x.u / x.value) ** 2))
         scale = sigma / x.u if x.u else 0.0
         drawn = x.value * np.exp(scale * error - 0.5 * sigma**2)
@@ -240,9 +239,7 @@ def _gradient(inputs: Sequence[Input], response: Response) -> tuple[float, Float
 
 def _moved(inputs: Sequence[Input], steps: Floats) -> dict[str, Floats]:
     """Give values by field, with each row of `steps`, shape (m, inputs), added."""
-    return {
-        field: x.value + steps[:, i] for i, x in enumerate(inputs) for field in x.drives
-    }
+    return {field: x.value + steps[:, i] for i, x in enumerate(inputs) for field in x.drives}
 
 
 def _asymmetry(

@@ -152,8 +152,6 @@ def from_si(value: float, unit: str) -> float:
     return (value - offset) / factor
 
 
-
-
 def read_quantity(text: str, si_unit: str, what: str) -> float:
     """Read a number that people write with its unit, such as `500um`, into SI `[si_unit]`.
 
