@@ -181,6 +181,53 @@ def paper(raw: Path | None, config: Path | None, processed: Path | None, as_json
     click.echo(f"paper      {page}: {known} of {len(entries)} printed numbers recomputed")
     if any(entry.synthetic for entry in entries):
         click.echo("SYNTHETIC  material values come from simulated files, not measurements")
+@click.argument("name", required=False)
+@click.option("--de", help="material of the film")
+@click.option("--passive", help="material of the passive layer")
+@click.option("--electrode", help="electrode of config/designs.toml")
+@click.option("--t-de", metavar="LENGTH", help="thickness of the film, with its unit: 500um")
+@click.option("--t-passive", metavar="LENGTH", help="[default: the one that bends most]")
+@click.option("--voltage", metavar="VOLTAGE", help="6.4kV [default: the highest allowed one]")
+@click.option("--probability", type=float, help="allowed part of the films that break down, 0 to 1")
+@click.option(
+    "--where", "-w", multiple=True, metavar="KEY=VALUE", help="a condition: age='2 months'"
+)
+@click.option("--compare", is_flag=True, help="compare all compositions as well")
+@click.option("--pareto", is_flag=True, help="list what no other design beats as well")
+@click.option(
+    "--figures", type=click.Path(file_okay=False, path_type=Path), help="draw into this folder"
+)
+@_folders
+@_json
+def design(
+    name: str | None,
+    de: str | None,
+    passive: str | None,
+    electrode: str | None,
+    t_de: str | None,
+    t_passive: str | None,
+    voltage: str | None,
+    probability: float | None,
+    where: tuple[str, ...],
+    compare: bool,
+    pareto: bool,
+    figures: Path | None,
+    raw: Path | None,
+    config: Path | None,
+    processed: Path | None,
+    as_json: bool,
+) -> None:
+    """Design an actuator: NAME of config/designs.toml, or options; options win."""
+    from pipeline.run.design import Asked, run_design
+
+    asked = Asked(
+        name, de, passive, electrode, t_de, t_passive, voltage, probability,
+        dict(_pair(w) for w in where),
+    )  # fmt: skip
+    document, text = run_design(
+        _where(raw, config, processed), asked, compare=compare, pareto=pareto, figures=figures
+    )
+    click.echo(json.dumps(document, indent=1) if as_json else text, nl=as_json)
 
 
 @cli.command()

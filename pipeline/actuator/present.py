@@ -186,6 +186,30 @@ def pareto_document(trades: tuple[Trade, ...], synthetic: bool) -> Document:
     }
 
 
+def pareto_text(trades: tuple[Trade, ...], synthetic: bool) -> str:
+    """Write for each voltage of a Pareto front what bends most and what pushes most."""
+    rows = [("voltage", "of", "film", "passive", "thickness", "curvature", "blocked force")]
+    for voltage in dict.fromkeys(t.voltage_V for t in trades):
+        here = [t for t in trades if t.voltage_V == voltage]
+        bends = max(here, key=lambda t: t.curvature_per_m)
+        pushes = max(here, key=lambda t: t.blocked_force_N)
+        for what, t in (("most curvature", bends), ("most force", pushes)):
+            rows.append(
+                (
+                    f"{from_si(t.voltage_V, 'kV'):.3g} kV",
+                    what,
+                    t.de,
+                    t.passive,
+                    f"{from_si(t.passive_thickness_m, 'um'):.4g} um",
+                    f"{t.curvature_per_m:.3g} 1/m",
+                    f"{from_si(t.blocked_force_N, 'uN'):.3g} uN",
+                )
+            )
+    banner = [SYNTHETIC_BANNER] if synthetic else []
+    head = f"What no other design beats: the ends of {len(trades)} designs at each voltage"
+    return "\n".join([head, *banner, *aligned(rows, "  ")]) + "\n"
+
+
 def _banner(synthetic: bool) -> Document:
     return {"synthetic": synthetic, "banner": SYNTHETIC_BANNER if synthetic else None}
 

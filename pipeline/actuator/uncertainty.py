@@ -1,7 +1,7 @@
 """What the uncertainties of cards and layers do to a prediction: first order and Monte Carlo.
 
-Inputs that rest on one calibration move together: shared contributions of the same source are one
-error, whichever inputs it enters. Independent ones belong to one input alone.
+Inputs that rest on one calibration or one fit move together: contributions of the same source are
+one error, whichever inputs it enters. What is shared by all specimens never averages away.
 """
 
 from __future__ import annotations
@@ -36,7 +36,8 @@ class Input:
     name : `compressive_modulus of sylgard-182-30to1`
     drives : fields of a `strip.Strip` that it sets: the modulus of a material used twice sets two
     value, unit : in SI, above zero
-    budget : standard uncertainties; shared ones with the same source are one error
+    budget : standard uncertainties; one source is one error, in whichever inputs it stands;
+        those that are not shared shrink with the number of specimens
     test : what measures it (`compression of sylgard-182-30to1`), None for a declared one
     n : specimens behind it, 0 for a declared one
     """
@@ -145,8 +146,7 @@ def combined(inputs: Sequence[Input], gradient: Floats | Sequence[float]) -> flo
     totals: dict[str, float] = {}
     for x, slope in zip(inputs, gradient, strict=True):
         for c in x.budget:
-            source = c.source if c.shared else f"{x.name}: {c.source}"
-            totals[source] = totals.get(source, 0.0) + slope * c.u
+            totals[c.source] = totals.get(c.source, 0.0) + slope * c.u
     return math.sqrt(sum(total**2 for total in totals.values()))
 
 
@@ -155,8 +155,8 @@ def monte_carlo(
 ) -> MonteCarlo:
     """Draw the inputs from log-normal distributions with their values and uncertainties.
 
-    Log-normal keeps thicknesses and moduli above zero; shared sources are drawn once for all
-    inputs that they enter.
+    Log-normal keeps thicknesses and moduli above zero; each source is drawn once for all inputs
+    that it enters.
 
     Parameters
     ----------
@@ -188,21 +188,17 @@ def monte_carlo(
 def sample(inputs: Sequence[Input], draws: int, seed: int) -> dict[str, Floats]:
     """Draw values by field of a strip, shape (draws,) each; see `monte_carlo`."""
     rng = np.random.default_rng(seed)
-    shared: dict[str, Floats] = {}
+    drawn: dict[str, Floats] = {}
     values: dict[str, Floats] = {}
     for x in inputs:
         error = np.zeros(draws)
         for c in x.budget:
-            if not c.shared:
-                error += c.u * rng.standard_normal(draws)
-                continue
-            if c.source not in shared:
-                shared[c.source] = rng.standard_normal(draws)
-            error += c.u * shared[c.source]
+            if c.source not in drawn:
+                drawn[c.source] = rng.standard_normal(draws)
+            error += c.u * drawn[c.source]
         sigma = math.sqrt(math.log1p((x.u / x.value) ** 2))
         scale = sigma / x.u if x.u else 0.0
-        drawn = x.value * np.exp(scale * error - 0.5 * sigma**2)
-        values |= dict.fromkeys(x.drives, drawn)
+        values |= dict.fromkeys(x.drives, x.value * np.exp(scale * error - 0.5 * sigma**2))
     return values
 
 
