@@ -119,7 +119,8 @@ def pareto(cards: Cards, declared: Designs, request: Request) -> tuple[Trade, ..
     """Give the designs that are best in curvature, voltage or blocked force, or in between.
 
     All films on all passive layers, 16 thicknesses of the passive layer from 0.1 to 3 of that of
-    the film, 20 voltages up to what breakdown and pull-in (or the voltage asked for) allow.
+    the film, at least 20 voltages up to what breakdown and pull-in (or the
+    voltage asked for) allow.
 
     Parameters
     ----------
@@ -143,7 +144,9 @@ def pareto(cards: Cards, declared: Designs, request: Request) -> tuple[Trade, ..
             reason = str(error)
     if not tops:
         raise MissingProperty(f"no pair of materials can be driven: {reason}")
-    grid = max(top for _, top in tops) * (np.arange(1, _VOLTAGES + 1) / _VOLTAGES)
+    highest = [top for _, top in tops]
+    # Where a film ends it is at its best, so that the end of each is a voltage for all
+    grid = np.unique([*highest, *(max(highest) * np.arange(1, _VOLTAGES) / _VOLTAGES)])
     size = declared.geometry
     length_m, width_m = to_si(size.length_mm, "mm"), to_si(size.width_mm, "mm")
     candidates: list[Trade] = []

@@ -11,7 +11,7 @@ import numpy as np
 
 from pipeline.actuator.declared import Designs, Electrode, Wanted
 from pipeline.actuator.ingredients import Ingredients, Where, gather, inputs_of, strip_of
-from pipeline.actuator.next_test import TestValue, next_tests
+from pipeline.actuator.next_test import TestValue, next_tests, plan
 from pipeline.actuator.ranges import Reals, check, within
 from pipeline.actuator.strip import (
     Allowed,
@@ -46,6 +46,7 @@ Bound: TypeAlias = Literal["given", "breakdown", "pull-in"]
 
 _POINTS = 24
 _DRAWS = 20_000
+_PLANNED = 10  # specimens
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,6 +123,7 @@ class Design:
     failure_probability : at the values; `failure_interval95` by Monte Carlo; None if unknown
     blocked_force_N : at the tip
     tornado, next_tests : what dominates, and which test narrows the curvature most
+    plan : on what the next ten specimens are best spent, one after the other
     points : curvature against voltage up to `voltage_V`
     """
 
@@ -143,6 +145,7 @@ class Design:
     blocked_force_N: float
     tornado: tuple[Bar, ...]
     next_tests: tuple[TestValue, ...]
+    plan: tuple[TestValue, ...]
     points: tuple[Point, ...]
     notes: tuple[str, ...]
 
@@ -192,6 +195,7 @@ def design(cards: Mapping[str, MaterialCard], declared: Designs, request: Reques
         float(breakdown_voltage(strip, allowed)) if known else None,
         prediction, monte_carlo(inputs, response, _DRAWS), chance, interval, float(force),
         tornado(inputs, response), next_tests(inputs, prediction),
+        plan(inputs, prediction, _PLANNED),
         _points(strip, found, declared, electrode, voltage, allowed),
         _notes(found, declared, electrode, prediction, allowed),
     )  # fmt: skip

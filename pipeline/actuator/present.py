@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from typing import Any
 
 from pipeline.actuator.compositions import Composition, Refused, Trade
@@ -40,6 +41,7 @@ def design_text(design: Design) -> str:
         best = 1.0 - t.u_best / t.u_now if t.u_now else 0.0
         rows.append((t.test, str(t.n), f"{100 * t.gain:.2f} %", f"{100 * best:.2f} %"))
     lines += aligned(rows, "  ")
+    lines += _plan(design)
     lines += ["", "Taken from the cards"]
     lines += aligned([_record_row(x) for x in design.ingredients.records()], "  ")
     lines += ["", "Notes", *(f"  {note}" for note in design.notes)]
@@ -107,6 +109,7 @@ def design_document(design: Design) -> Document:
             }
             for t in design.next_tests
         ],
+        "plan": [step.test for step in design.plan],
         "curve": [
             {
                 "voltage_V": p.voltage_V,
@@ -255,6 +258,16 @@ def _answer(design: Design) -> list[str]:
         f"            by Monte Carlo ({drawn})",
         f"force       {force_uN:.3g} uN blocked at the tip",
     ]
+
+
+def _plan(design: Design) -> list[str]:
+    steps = design.plan
+    if not steps:
+        return []
+    counts = Counter(step.test for step in steps)
+    best = ", ".join(f"{count} {test}" for test, count in counts.items())
+    gain = 100 * (1.0 - steps[-1].u_then / steps[0].u_now)
+    return [f"  the next {len(steps)} specimens are best spent on {best}: {gain:.2g} % narrower"]
 
 
 def _bar_row(bar: Bar) -> tuple[str, str, str]:
