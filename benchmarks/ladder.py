@@ -1,0 +1,320 @@
+"""What each rung of the actuator ladder costs and misses, and where it stops to hold.
+
+    OPENBLAS_NUM_THREADS=1 python -m benchmarks.ladder [--designs 3000]
+
+Random designs (SYNTHETIC: drawn, nobody made them) are put to every rung; the top one, the elastica,
+is the reference, so errors are those of the simplification and not those against a laboratory. The
+chart, the map and their numbers go to processed/benchmarks/.
+"""
+
+from __future__ import annotations
+
+import argparse
+import io
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from benchmarks.timing import RESULTS, Row, stay_on_one_core, table, write_results
+from pipeline.actuator.beam import Beam, actuate, weight
+from pipeline.actuator.ladder import NEGLECTS, Actuator, Answer, Rung, choose, evaluate
+from pipeline.actuator.ranges import Reals
+from pipeline.actuator.stack import FIRST_LAYER_DOWN, ON_EDGE, Layer, Orientation, Role, Stack
+from pipeline.actuator.strain import pull_in_voltage
+from pipeline.core.atomic import write_atomically
+from pipeline.core.errors import FitRefused, OutOfRange
+from pipeline.report.style import COLOURS, figure_style
+
+Floats = NDArray[np.float64]
+POISSON_RATIO, WIDTH_m, DENSITY_kg_m3 = 0.49, 0.01, 1030.0
+TOLERANCES = (3e-1, 1e-1, 3e-2, 1e-2, 1e-3, 1e-4)
+TIMED = 200
+_GOOD = 0.01  # the line of the map: one percent
+
+
+@dataclass(frozen=True, slots=True)
+class Draw:
+    """One random design and where its elastica ends."""
+
+    actuator: Actuator
+    reference: Answer
+
+
+def stack(
+    passive: tuple[float, float], film: tuple[float, float], electrode: tuple[float, float]
+) -> Stack:
+    """Give a strip from (thickness, modulus) of its three materials."""
+
+    def layer(role: Role, made: tuple[float, float]) -> Layer:
+        return Layer(role, *made, WIDTH_m, DENSITY_kg_m3, 2.6, POISSON_RATIO)
+
+    below = layer("electrode", electrode)
+    return Stack((layer("passive", passive), below, layer("de", film), below))
+
+
+def draw(count: int, seed: int = 0) -> tuple[list[Draw], int]:
+    """Draw designs like those of the literature; give those that rest, and how many do not.
+
+    Thicknesses and moduli over a decade and more, 5 to 95 % of the pull-in voltage, strips of 2 to
+    30 mm in any orientation.
+    """
+    rng = np.random.default_rng(seed)
+    found: list[Draw] = []
+    lost = 0
+
+    def decade(low: float, high: float) -> float:
+        return float(np.exp(rng.uniform(math.log(low), math.log(high))))
+
+    for _ in range(count):
+        film = decade(100e-6, 1e-3), decade(5e4, 2e6)
+        passive = film[0] * decade(0.1, 2.0), film[1] * decade(0.5, 50.0)
+        electrode = decade(1e-6, 30e-6), decade(1e5, 1e7)
+        limit = float(np.asarray(pull_in_voltage(*film, 2.6)))
+        voltage = limit * float(rng.uniform(0.05, 0.95))
+        orientation = Orientation(float(rng.uniform(-math.pi, math.pi)))
+        made = Actuator(
+            stack(passive, film, electrode), decade(2e-3, 30e-3), voltage, "poisson", orientation
+        )
+        try:
+            found.append(Draw(made, evaluate(made, "elastica")))
+        except (FitRefused, OutOfRange):
+            lost += 1  # it buckles, snaps or coils up: no rung is right about it
+    return found, lost
+
+
+def tip_error(answer: Answer, reference: Answer, length_m: float) -> float:
+    """Give the distance of two tips in lengths."""
+    apart = math.hypot(answer.tip_x_m - reference.tip_x_m, answer.tip_y_m - reference.tip_y_m)
+    return apart / length_m
+
+
+def microseconds(work: Callable[[Actuator], object], on: Sequence[Draw]) -> float:
+    """Give the least processor time per design of five rounds `[us]`."""
+    best = math.inf
+    for _ in range(5):
+        start = time.process_time()
+        for d in on:
+            work(d.actuator)
+        best = min(best, time.process_time() - start)
+    return 1e6 * best / len(on)
+
+
+def row(name: str, cost_us: float, apart: Floats, bent: Floats) -> Row:
+    """Give quantiles of the errors of tip (in lengths) and curvature (relative)."""
+    return {
+        "model": name,
+        "us_per_design": cost_us,
+        "tip_median": float(np.median(apart)),
+        "tip_90": float(np.quantile(apart, 0.9)),
+        "tip_worst": float(apart.max()),
+        "curvature_median": float(np.median(bent)),
+        "curvature_90": float(np.quantile(bent, 0.9)),
+        "designs": apart.size,
+    }
+
+
+def rungs(draws: Sequence[Draw]) -> list[Row]:
+    """Measure every rung, and `choose` at several tolerances."""
+    some = draws[:TIMED]
+    rows = []
+    for rung in NEGLECTS:
+        answers = [evaluate(d.actuator, rung) for d in draws]
+        cost = microseconds(lambda a, r=rung: evaluate(a, r), some)  # type: ignore[misc]  # mypy cannot type the default
+        rows.append(_errors(rung, cost, answers, draws))
+    for tolerance in TOLERANCES:
+        chosen = [choose(d.actuator, tolerance) for d in draws]
+        cost = microseconds(lambda a, t=tolerance: choose(a, t), some)  # type: ignore[misc]  # as above
+        found = _errors(f"choose to {tolerance:g}", cost, [c.answer for c in chosen], draws)
+        kept = np.mean([
+            tip_error(c.answer, d.reference, d.actuator.length_m) <= tolerance
+            for c, d in zip(chosen, draws, strict=True)
+        ])  # fmt: skip
+        rows.append({**found, "within": float(kept)})
+    return [{"within": "", **r} for r in rows]
+
+
+def _errors(name: str, cost: float, answers: Sequence[Answer], draws: Sequence[Draw]) -> Row:
+    pairs = list(zip(answers, draws, strict=True))
+    apart = np.array([tip_error(a, d.reference, d.actuator.length_m) for a, d in pairs])
+    bent = np.array([abs(a.curvature_per_m / d.reference.curvature_per_m - 1.0) for a, d in pairs])
+    return row(name, cost, apart, bent)
+
+
+BASE = ((304e-6, 0.957e6), (446e-6, 0.957e6), (10e-6, 3.5e6))
+PULL_IN_V = float(np.asarray(pull_in_voltage(*BASE[1], 2.6)))
+
+
+def by_drive(x: float) -> Actuator:
+    """V over the pull-in voltage; short, so that only the films matter."""
+    return Actuator(stack(*BASE), 2e-3, x * PULL_IN_V, "poisson", ON_EDGE)
+
+
+def by_electrode(x: float) -> Actuator:
+    """Stiffness of both electrodes over that of the film, by their modulus."""
+    passive, film, (thickness, _) = BASE
+    modulus = x * film[0] * film[1] / (2 * thickness)
+    made = stack(passive, film, (thickness, modulus))
+    return Actuator(made, 2e-3, 0.2 * PULL_IN_V, "poisson", ON_EDGE)
+
+
+def by_weight(x: float) -> Actuator:
+    """Length over the elasto-gravity length; the films turn the tip by a tenth of a radian."""
+    beam = actuate(stack(*BASE), 1.0, "poisson")
+    length = x * gravity_length_m(beam)
+    return Actuator(stack(*BASE), length, _turning(0.1 / length), "poisson", FIRST_LAYER_DOWN)
+
+
+def by_turn(x: float) -> Actuator:
+    """Angle by which the films turn the tip; on edge, so that weight plays no part."""
+    length = 20e-3
+    return Actuator(stack(*BASE), length, _turning(x / length), "poisson", ON_EDGE)
+
+
+def gravity_length_m(beam: Beam) -> float:
+    """Give the elasto-gravity length `(B / w)^(1/3)` `[m]`."""
+    return float(np.cbrt(beam.bending_stiffness_N_m2 / weight(beam, FIRST_LAYER_DOWN)))
+
+
+def _turning(curvature_per_m: float) -> float:
+    low, high = 0.0, PULL_IN_V
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        bent: Reals = actuate(stack(*BASE), middle, "poisson").curvature_per_m
+        low, high = (middle, high) if bent < curvature_per_m else (low, middle)
+    return low
+
+
+SWEEPS: dict[str, tuple[str, Callable[[float], Actuator], Floats]] = {
+    "drive": ("voltage over that of pull-in", by_drive, np.linspace(0.03, 0.99, 33)),
+    "electrodes": ("stiffness of electrodes over film", by_electrode, np.geomspace(1e-3, 30, 33)),
+    "weight": ("length over elasto-gravity length", by_weight, np.geomspace(0.1, 1.9, 33)),
+    "turn": ("turn of the tip [rad]", by_turn, np.geomspace(0.03, 1.3, 33)),
+}
+
+
+def sweep(make: Callable[[float], Actuator], points: Floats) -> dict[Rung, Floats]:
+    """Give the error of the tip along a sweep, relative to the way that the tip goes."""
+    found: dict[Rung, list[float]] = {rung: [] for rung in NEGLECTS}
+    for x in points.tolist():
+        actuator = make(x)
+        top = evaluate(actuator, "elastica")
+        way = math.hypot(top.tip_x_m - actuator.length_m, top.tip_y_m)
+        for rung in NEGLECTS:
+            apart = tip_error(evaluate(actuator, rung), top, actuator.length_m)
+            found[rung].append(apart * actuator.length_m / way)
+    return {rung: np.array(errors) for rung, errors in found.items()}
+
+
+def chart(rows: Sequence[Row], designs: int) -> Figure:
+    """Draw time against error: rungs with their spread, and what `choose` makes of them."""
+    figure = Figure(figsize=(6.3, 4.2), layout="constrained")
+    axes = figure.add_subplot()
+    floor = 1e-10  # the elastica is its own reference: no error to draw
+    for i, r in enumerate(r for r in rows if not str(r["model"]).startswith("choose")):
+        if r["model"] == "elastica":
+            axes.axvline(float(r["us_per_design"]), color="#999999", lw=0.8, ls=":")
+            axes.annotate(
+                "elastica\n(reference)", (float(r["us_per_design"]), 0.97), (-4, 0),
+                xycoords=("data", "axes fraction"), textcoords="offset points",
+                ha="right", va="top", fontsize=7.5,
+            )  # fmt: skip
+            continue
+        low, high = float(r["tip_median"]), float(r["tip_90"])
+        colour = COLOURS[i % len(COLOURS)]
+        axes.plot([r["us_per_design"]] * 2, [max(low, floor), high], "-", color=colour, lw=2)
+        axes.plot(r["us_per_design"], low, "o", color=colour, label=str(r["model"]))
+    chosen = [r for r in rows if str(r["model"]).startswith("choose")]
+    axes.plot(
+        [r["us_per_design"] for r in chosen], [max(float(r["tip_median"]), floor) for r in chosen],
+        "k--", marker="s", ms=3.5, label="choose to " + ", ".join(f"{t:g}" for t in TOLERANCES),
+    )  # fmt: skip
+    axes.set(
+        xscale="log", yscale="log", xlabel="processor time for one design [us]",
+        ylabel="error of the tip [lengths]",
+    )  # fmt: skip
+    axes.set_title(
+        f"SYNTHETIC: {designs} random designs; points are medians, bars reach to 90 %",
+        loc="left", fontsize=8.5,
+    )  # fmt: skip
+    figure.legend(loc="outside lower center", ncols=3)
+    return figure
+
+
+def validity_map(errors: dict[str, dict[Rung, Floats]]) -> Figure:
+    """Draw for each cause of trouble where each rung crosses one percent."""
+    figure = Figure(figsize=(6.3, 6.0), layout="constrained")
+    panels = np.ravel(figure.subplots(2, 2, sharey=True))
+    for axes, (key, (label, _, points)) in zip(panels, SWEEPS.items(), strict=True):
+        _panel(axes, points, errors[key])
+        axes.set_xlabel(label)
+        if key != "drive":
+            axes.set_xscale("log")
+    for axes in panels[::2]:
+        axes.set_ylabel("error of the tip over its way")
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.suptitle(
+        "SYNTHETIC: one strip (304 um on 446 um, 0.957 MPa), one number at a time", fontsize=8.5
+    )
+    figure.legend(handles, labels, loc="outside lower center", ncols=3)
+    return figure
+
+
+def _panel(axes: Axes, points: Floats, errors: dict[Rung, Floats]) -> None:
+    for i, (rung, error) in enumerate(errors.items()):
+        if rung != "elastica":
+            axes.plot(points, np.maximum(error, 1e-9), color=COLOURS[i], label=rung)
+    axes.axhline(_GOOD, color="black", lw=0.7)
+    axes.set(yscale="log", ylim=(1e-6, 3))
+
+
+def first_beyond(points: Floats, error: Floats) -> float | str:
+    """Give where an error first passes one percent; empty if it never does."""
+    over = np.flatnonzero(error > _GOOD)
+    return float(points[over[0]]) if over.size else ""
+
+
+def save(figure: Figure, name: str) -> None:
+    """Write a figure as SVG and PNG, the same bytes for the same numbers."""
+    FigureCanvasAgg(figure)
+    about: dict[str, dict[str, str | None]] = {
+        "svg": {"Title": name, "Description": "SYNTHETIC designs", "Date": None},
+        "png": {"Title": name, "Description": "SYNTHETIC designs"},
+    }
+    for kind, metadata in about.items():
+        buffer = io.BytesIO()
+        figure.savefig(buffer, format=kind, dpi=200, metadata=metadata)
+        write_atomically(RESULTS / f"{name}.{kind}", buffer.getvalue())
+
+
+def main(designs: int = 3000) -> None:
+    """Measure, print and write charts and numbers."""
+    stay_on_one_core()
+    draws, lost = draw(designs)
+    rows = rungs(draws)
+    print(f"SYNTHETIC: {len(draws)} random designs; {lost} more buckle, snap or coil: no answer")
+    print(table(rows))
+    write_results("ladder", rows, ("numpy", "scipy"))
+    errors = {key: sweep(make, points) for key, (_, make, points) in SWEEPS.items()}
+    limits: list[Row] = [
+        {"rung": rung, **{key: first_beyond(SWEEPS[key][2], errors[key][rung]) for key in SWEEPS}}
+        for rung in NEGLECTS
+    ]
+    print("\nwhere the error first passes one percent of the way of the tip")
+    print(table(limits))
+    write_results("ladder_validity", limits, ("numpy", "scipy"))
+    with figure_style("ladder"):
+        save(chart(rows, len(draws)), "ladder")
+        save(validity_map(errors), "ladder_validity")
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__, allow_abbrev=False)
+    parser.add_argument("--designs", type=int, default=3000)
+    main(parser.parse_args().designs)
