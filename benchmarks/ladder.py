@@ -2,8 +2,8 @@
 
     OPENBLAS_NUM_THREADS=1 python -m benchmarks.ladder [--designs 3000]
 
-Random designs (SYNTHETIC: drawn, nobody made them) are put to every rung; the top one, the elastica,
-is the reference, so errors are those of the simplification and not those against a laboratory. The
+Random designs (SYNTHETIC: drawn, nobody made them) are put to every rung; the top one, the
+elastica, is the reference, so errors are those of the simplification, not against a laboratory. The
 chart, the map and their numbers go to processed/benchmarks/.
 """
 

@@ -181,6 +181,8 @@ def paper(raw: Path | None, config: Path | None, processed: Path | None, as_json
     click.echo(f"paper      {page}: {known} of {len(entries)} printed numbers recomputed")
     if any(entry.synthetic for entry in entries):
         click.echo("SYNTHETIC  material values come from simulated files, not measurements")
+
+
 @click.argument("name", required=False)
 @click.option("--de", help="material of the film")
 @click.option("--passive", help="material of the passive layer")

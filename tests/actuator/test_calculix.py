@@ -84,9 +84,9 @@ def deck(held: bool) -> str:
         return f"*NSET, NSET={name}\n" + "\n".join(f"{n}," for n in numbers if n in used)
 
     materials = []
-    for i, layer in enumerate(strip().layers):
-        modulus_MPa = 1e-6 * float(np.asarray(layer.modulus_Pa))
-        grow = STRAIN if layer.role == "de" else 0.0
+    for i, sheet in enumerate(strip().layers):
+        modulus_MPa = 1e-6 * float(np.asarray(sheet.modulus_Pa))
+        grow = STRAIN if sheet.role == "de" else 0.0
         materials.append(
             f"*MATERIAL, NAME=M{i}\n*ELASTIC\n{modulus_MPa:.9g}, {POISSON_RATIO}\n"
             f"*EXPANSION, TYPE=ORTHO, ZERO=0\n{grow:.9g}, 0., 0.\n"
