@@ -1,0 +1,1 @@
+"""Families of estimators that are charted, one module each."""

@@ -1,0 +1,170 @@
+"""Error and time of estimators on the same simulated data, and which of them are on the front."""
+
+from __future__ import annotations
+
+import importlib.util
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Generic, TypeVar
+
+import numpy as np
+
+from benchmarks.timing import Row
+from pipeline.core.errors import FitRefused
+from pipeline.core.records import FloatArray
+
+Sample = TypeVar("Sample")
+
+_PARTS = 8  # contenders take turns this often, so that a drift of the machine hits all alike
+_ALPHA = 0.05
+_CLEARLY_FASTER = 0.9
+_CLEARLY_BETTER = 0.98
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """Estimates and nominal 95 % intervals of k questions, shape (k,) each."""
+
+    value: FloatArray
+    low: FloatArray
+    high: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Contender(Generic[Sample]):
+    """One estimator.
+
+    Parameters
+    ----------
+    name : as charts and tables print it
+    fit : one sample to the answers
+    default : what the pipeline uses
+    outside : a peer from another package
+    every : slow ones take only each so-manieth sample
+    """
+
+    name: str
+    fit: Callable[[Sample], Answer]
+    default: bool = False
+    outside: bool = False
+    every: int = 1
+
+
+def is_there(package: str) -> bool:
+    """Say whether an optional rival is installed; a missing one is skipped with a message."""
+    if importlib.util.find_spec(package) is not None:
+        return True
+    print(f"{package} is not installed: skipped")
+    return False
+
+
+def run(
+    contenders: Sequence[Contender[Sample]], samples: Sequence[Sample], questions: int
+) -> dict[str, tuple[FloatArray, float]]:
+    """Let all contenders answer, turn by turn.
+
+    Returns
+    -------
+    by name: answers, shape (samples, 3, questions), NaN where refused or not asked; and the median
+    over the parts of the processor time of a fit `[s]`
+    """
+    answers = {c.name: np.full((len(samples), 3, questions), np.nan) for c in contenders}
+    seconds: dict[str, list[float]] = {c.name: [] for c in contenders}
+    for c in contenders:  # imports and caches are not what a fit costs
+        _answer(c, samples[0])
+    bounds = np.linspace(0, len(samples), _PARTS + 1).astype(int).tolist()
+    for first, last in pairwise(bounds):
+        for c in contenders:
+            chosen = [i for i in range(first, last) if i % c.every == 0]
+            if not chosen:
+                continue
+            start = time.process_time()
+            found = [_answer(c, samples[i]) for i in chosen]
+            seconds[c.name].append((time.process_time() - start) / len(chosen))
+            for i, answer in zip(chosen, found, strict=True):
+                if answer is not None:
+                    answers[c.name][i] = answer.value, answer.low, answer.high
+    return {name: (answers[name], float(np.median(seconds[name]))) for name in answers}
+
+
+def _answer(contender: Contender[Sample], sample: Sample) -> Answer | None:
+    try:
+        return contender.fit(sample)
+    except FitRefused:
+        return None
+
+
+def statistics(answers: FloatArray, truth: FloatArray) -> dict[str, float]:
+    r"""Summarise answers, shape (m, 3, k), against truths, shape (m, k), relative to these.
+
+    The interval error is the score $(u - l) + \tfrac{2}{\alpha} \cdot$ (distance by which the
+    interval misses): it punishes an interval both for its width and for missing the truth, and on
+    average is least for the interval that states what is known. Answers that are refused or not
+    finite count as failed and enter nothing else.
+
+    Source: T. Gneiting, A. E. Raftery, J. Am. Stat. Assoc. 102 (2007) 359, equation 43.
+    """
+    asked = answers / truth[:, None, :] - 1.0
+    good = np.isfinite(asked[:, 0]).all(axis=1)
+    if not good.any():
+        return dict.fromkeys(("bias %", "rmse %", "coverage %", "interval error %"), math.nan)
+    value, low, high = asked[good].transpose(1, 0, 2)
+    missed = np.maximum(low, 0.0) + np.maximum(-high, 0.0)
+    score = (high - low) + 2.0 / _ALPHA * missed
+    covered = (low <= 0.0) & (high >= 0.0)
+    return {
+        "bias %": 100.0 * float(np.abs(value.mean(axis=0)).max()),
+        "rmse %": 100.0 * math.sqrt(float(np.mean(value**2))),
+        "coverage %": 100.0 * float(covered.mean()) if np.isfinite(score).all() else math.nan,
+        "interval error %": 100.0 * float(np.mean(score)),
+    }
+
+
+def measured_rows(
+    contenders: Sequence[Contender[Sample]], samples: Sequence[Sample], truth: FloatArray
+) -> list[Row]:
+    """Give one row for each contender; `truth` is of shape (samples, questions)."""
+    found = run(contenders, samples, truth.shape[1])
+    rows: list[Row] = []
+    for c in contenders:
+        answers, seconds = found[c.name]
+        asked = np.arange(len(samples)) % c.every == 0
+        failed = ~np.isfinite(answers[asked, 0]).all(axis=1)
+        rows.append(
+            {
+                "contender": c.name,
+                "kind": "default" if c.default else "outside" if c.outside else "own rival",
+                "us per fit": 1e6 * seconds,
+                "fits": int(asked.sum()),
+                "failed %": 100.0 * float(failed.mean()),
+                **statistics(answers[asked], truth[asked]),
+            }
+        )
+    return rows
+
+
+def front(times: Sequence[float], errors: Sequence[float]) -> list[int]:
+    """Find the Pareto front: the contenders that no other beats in time without losing in error.
+
+    One is beaten by another that is no slower and no worse, and clearly better in one of the two:
+    by 10 % in time or 2 % in error, which clock and simulation can tell. NaN is never on it.
+
+    Returns
+    -------
+    indices, the fastest first
+    """
+    real = [i for i, pair in enumerate(zip(times, errors, strict=True)) if np.isfinite(pair).all()]
+    kept = [
+        i
+        for i in real
+        if not any(
+            times[j] <= times[i]
+            and errors[j] <= errors[i]
+            and (times[j] < _CLEARLY_FASTER * times[i] or errors[j] < _CLEARLY_BETTER * errors[i])
+            for j in real
+        )
+    ]
+    return sorted(kept, key=lambda i: times[i])
