@@ -82,7 +82,7 @@ def contenders() -> list[Contender[Series]]:
         Contender("scipy curve_fit", _answers(_curve_fit), outside=True),
     ]
     if is_there("lmfit"):
-        found.append(Contender("lmfit Model", _answers(_lmfit), outside=True + 1))
+        found.append(Contender("lmfit minimize", _answers(_lmfit), outside=True))
     return found
 
 
@@ -175,15 +175,17 @@ def _curve_fit(x: FloatArray, y: FloatArray, degree: int) -> Pair:
 
 
 def _lmfit(x: FloatArray, y: FloatArray, degree: int) -> Pair:
-    from lmfit.models import PolynomialModel
+    from lmfit import Parameters, minimize
 
-    model = PolynomialModel(degree=min(degree, 7))
-    names = [f"c{k}" for k in range(min(degree, 7) + 1)]
-    result = model.fit(y, x=x, **dict.fromkeys(names, 1.0))
-    values = [result.params[name].value for name in names]
-    errors = [result.params[name].stderr or np.nan for name in names]
-    missing = degree + 1 - len(names)
-    return np.array(values + [np.nan] * missing), np.array(errors + [np.nan] * missing)
+    names = [f"c{k}" for k in range(degree + 1)]
+    start = Parameters()
+    for name in names:
+        start.add(name, value=1.0)
+    found = minimize(
+        lambda p: np.polynomial.polynomial.polyval(x, [p[name].value for name in names]) - y, start
+    ).params
+    errors = [found[name].stderr or np.nan for name in names]
+    return np.array([found[name].value for name in names]), np.array(errors)
 
 
 def _why(found: Sequence[Row]) -> str:

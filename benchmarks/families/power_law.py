@@ -70,7 +70,6 @@ def contenders() -> list[Contender[Readings]]:
                 "lmfit Model, weighted, time scaled by hand",
                 _in_hours(_lmfit),
                 outside=True,
-                every=9,
             ),
         ]
     return found
@@ -127,9 +126,9 @@ def _why(found: Sequence[Row]) -> str:
     ours, fast = default_of(found), named(found, "log-log, time by time")
     peer = named(found, "scipy curve_fit, weighted")
     return (
-        f"The error of a viscometer is a part of its reading, and so the default fits logarithms: "
-        f"RMSE {number(ours, 'rmse %'):.2f} %, coverage {number(ours, 'coverage %'):.1f} %. Lines of "
-        f"logarithms are faster, but lose {number(fast, 'rmse %') / number(ours, 'rmse %'):.1f} "
+        "The error of a viscometer is a part of its reading, and so the default fits logarithms: "
+        f"RMSE {number(ours, 'rmse %'):.2f} %, coverage {number(ours, 'coverage %'):.1f} %. Lines "
+        f"of logarithms are faster, but lose {number(fast, 'rmse %') / number(ours, 'rmse %'):.1f} "
         f"times as much. curve_fit with the same weights and a fair start is as right "
         f"({number(peer, 'rmse %'):.2f} %) in {number(peer, 'us per fit') / 1e3:.1f} ms instead of "
         f"{number(ours, 'us per fit') / 1e3:.1f}: the default spends the rest on searches from "

@@ -1,0 +1,71 @@
+"""`docs/benchmarks.md` and the committed pictures, written from what a run measured."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Sequence
+from importlib import metadata
+from pathlib import Path
+
+from benchmarks.families.family import Family, default_of, number
+from benchmarks.timing import Row
+from pipeline.core.atomic import write_atomically
+
+IMAGES = Path("docs/methods/img")
+_HEAD = """\
+# Benchmarks
+
+Written by `make docs`; every number below comes from one run of `python -m benchmarks.chart --docs`
+and all data in it are simulated. Times are processor time on one core and depend on the machine;
+the ratios, taken in the same run on the same samples, are what to compare. An error is relative to
+the known truth; which one is drawn stands on the axis of each chart. A contender is on the front
+unless another is clearly faster (10 %) and as right, or clearly more right (2 %) and as fast.
+Batches are measured but compete with nobody.
+
+Speed of reading and fitting whole files: `make bench`. Where methods fail: the maps in
+[methods/](methods), drawn by `make stability`.
+"""
+
+
+def copy_picture(png: Path) -> None:
+    """Put a picture beside the pages on methods."""
+    write_atomically(IMAGES / png.name, png.read_bytes())
+
+
+def write_page(found: Sequence[tuple[Family, list[Row]]], page: Path) -> None:
+    """Write the summary: the default of each family beside its rivals, in ratios."""
+    packages = ", ".join(f"{p} {metadata.version(p)}" for p in _packages(found))
+    parts = [_HEAD, f"Run with Python {platform.python_version()}, {packages}.\n"]
+    parts += [_section(family, rows) for family, rows in found]
+    write_atomically(page, "\n".join(parts).encode())
+
+
+def _packages(found: Sequence[tuple[Family, list[Row]]]) -> list[str]:
+    lmfit = any("lmfit" in str(row["contender"]) for _, rows in found for row in rows)
+    return ["numpy", "scipy", *(["lmfit"] if lmfit else [])]
+
+
+def _section(family: Family, rows: Sequence[Row]) -> str:
+    ours = default_of(rows)
+    lines = [
+        f"## {family.title}",
+        "",
+        f"![Time against error, SYNTHETIC DATA](methods/img/chart_{family.key}.png)",
+        "",
+        family.why(rows),
+        "",
+        "| contender | time of a fit | times the default's | error | times the default's | front |",
+        "|---|---|---|---|---|---|",
+    ]
+    for row in rows:
+        name = f"**{row['contender']}**" if row["kind"] == "default" else str(row["contender"])
+        time_us, error = number(row, "us per fit"), number(row, family.error)
+        lines.append(
+            f"| {name} | {_time(time_us)} | {time_us / number(ours, 'us per fit'):.2g} | "
+            f"{error:.2g} | {error / number(ours, family.error):.2g} | {row['front']} |"
+        )
+    return "\n".join([*lines, "", f"Error: {family.axis}.", ""])
+
+
+def _time(us: float) -> str:
+    return f"{us / 1e3:.3g} ms" if us >= 1e3 else f"{us:.3g} us"

@@ -1,0 +1,131 @@
+"""Chart of one family: time against error, the front, the default, and why it is the default."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from benchmarks.families.family import Family, number
+from benchmarks.timing import Row
+from pipeline.report.style import (
+    COLOURS,
+    PAGE_WIDTH_in,
+    figure_style,
+    plain,
+    save_figure,
+    set_title,
+)
+
+_KINDS = {
+    "default": (COLOURS[1], "D", "default"),
+    "batch": (COLOURS[3], "^", "default, batched"),
+    "own rival": (COLOURS[0], "o", "rival of our own"),
+    "outside": (COLOURS[2], "s", "other package"),
+}
+_LINE_in = 0.16
+_CHARACTERS = 108
+
+
+def draw_front(family: Family, rows: Sequence[Row], folder: Path) -> tuple[Path, Path]:
+    """Draw a family's chart and write it as SVG and PNG.
+
+    Parameters
+    ----------
+    family : title, axis and the text under the chart
+    rows : as `with_front` gives them
+    """
+    name = f"chart_{family.key}"
+    under = textwrap.wrap(family.why(rows), _CHARACTERS)
+    foot_in = _LINE_in * len(under) + 0.12
+    with figure_style(name):
+        figure = Figure(figsize=(PAGE_WIDTH_in, 3.4 + foot_in))
+        FigureCanvasAgg(figure)
+        part = foot_in / figure.get_figheight()
+        figure.set_layout_engine("constrained", rect=(0.0, part, 1.0, 1.0 - part))
+        axes, side = figure.subplots(1, 2, width_ratios=(1.0, 0.78))
+        _points(axes, family, rows)
+        _key(side, family, rows)
+        set_title(figure, family.title)
+        text = figure.text(0.008, 0.06 / figure.get_figheight(), "\n".join(under), va="bottom")
+        plain(text).set(fontsize=7.5, linespacing=1.35)
+        return save_figure(figure, axes, folder, name, family.title, synthetic=True)
+
+
+def _points(axes: Axes, family: Family, rows: Sequence[Row]) -> None:
+    axes.set(xscale="log", yscale="log", xlabel="processor time of a fit [µs]", ylabel=family.axis)
+    chosen = [row for row in rows if row["front"] == "yes"]
+    chosen.sort(key=lambda row: number(row, "us per fit"))
+    times = [number(row, "us per fit") for row in chosen]
+    errors = [number(row, family.error) for row in chosen]
+    every = [number(row, "us per fit") for row in rows]
+    worst = max(e for row in rows if (e := number(row, family.error)) == e)
+    # nobody is faster than the first, and nobody better than the last
+    x, y = [times[0], *times, 3.0 * max(every)], [3.0 * worst, *errors, errors[-1]]
+    axes.step(x, y, where="post", color="#666666", linewidth=1.0, linestyle=(0, (4, 2)), zorder=1)
+    for i, row in enumerate(rows, 1):
+        colour, marker, _ = _KINDS[str(row["kind"])]
+        place = (number(row, "us per fit"), number(row, family.error))
+        on_front = row["front"] == "yes"
+        face = colour if on_front else "white"
+        axes.plot(*place, marker, color=colour, markerfacecolor=face, markersize=10.5, zorder=3)
+        axes.annotate(
+            str(i),
+            place,
+            ha="center",
+            va="center_baseline",
+            fontsize=6.5,
+            fontweight="bold",
+            color="white" if on_front else colour,
+            zorder=4,
+        )
+    low = min(e for row in rows if (e := number(row, family.error)) == e)
+    margin = (worst / low) ** 0.08 * 1.15
+    axes.set_ylim(low / margin, worst * margin)
+    axes.set_xlim(min(every) / 1.8, 1.8 * max(every))
+    handles = [
+        Line2D([], [], color=c, marker=m, linestyle="", markersize=6, label=label)
+        for kind, (c, m, label) in _KINDS.items()
+        if any(row["kind"] == kind for row in rows)
+    ]
+    handles.append(Line2D([], [], color="#666666", linestyle=(0, (4, 2)), label="Pareto front"))
+    axes.legend(
+        handles=handles,
+        loc="lower left",
+        bbox_to_anchor=(-0.02, 1.07),
+        ncols=4,
+        columnspacing=1.0,
+        handletextpad=0.3,
+        borderpad=0.0,
+    )
+
+
+def _key(axes: Axes, family: Family, rows: Sequence[Row]) -> None:
+    """Name the numbered points, with their time and error."""
+    axes.set_axis_off()
+    height = 1.0 / (len(rows) + 1)
+    for x, head in ((0.80, "time"), (1.0, "error")):
+        axes.text(
+            x, 1.0 - 0.4 * height, head, ha="right", va="center", fontsize=7.0, color="#555555"
+        )
+    for i, row in enumerate(rows, 1):
+        y = 1.0 - (i + 0.4) * height
+        colour, _, _ = _KINDS[str(row["kind"])]
+        weight = "bold" if row["front"] == "yes" else "normal"
+        wrapped = textwrap.fill(str(row["contender"]), 27)
+        axes.text(0.03, y, str(i), ha="right", va="center", fontsize=7, color=colour, weight="bold")
+        style: dict[str, Any] = {"fontsize": 6.6, "fontweight": weight, "va": "center"}
+        plain(axes.text(0.06, y, wrapped, linespacing=0.95, **style))
+        axes.text(0.80, y, _time(number(row, "us per fit")), ha="right", **style)
+        axes.text(1.0, y, f"{number(row, family.error):.2g}", ha="right", **style)
+    axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.0))
+
+
+def _time(us: float) -> str:
+    return f"{us / 1e3:.2g} ms" if us >= 1e3 else f"{us:.2g} µs" if us < 100 else f"{us:.0f} µs"
