@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import LogFormatter, ScalarFormatter
 
 from benchmarks.families.family import Family, number
 from benchmarks.timing import Row
@@ -30,7 +31,7 @@ _KINDS = {
     "outside": (COLOURS[2], "s", "other package"),
 }
 _LINE_in = 0.16
-_CHARACTERS = 108
+_CHARACTERS = 116
 
 
 def draw_front(family: Family, rows: Sequence[Row], folder: Path) -> tuple[Path, Path]:
@@ -45,11 +46,12 @@ def draw_front(family: Family, rows: Sequence[Row], folder: Path) -> tuple[Path,
     under = textwrap.wrap(family.why(rows), _CHARACTERS)
     foot_in = _LINE_in * len(under) + 0.12
     with figure_style(name):
-        figure = Figure(figsize=(PAGE_WIDTH_in, 3.4 + foot_in))
+        height_in = 3.7 + foot_in
+        figure = Figure(figsize=(PAGE_WIDTH_in, height_in))
         FigureCanvasAgg(figure)
-        part = foot_in / figure.get_figheight()
-        figure.set_layout_engine("constrained", rect=(0.0, part, 1.0, 1.0 - part))
-        axes, side = figure.subplots(1, 2, width_ratios=(1.0, 0.78))
+        bottom, tall = (foot_in + 0.45) / height_in, 2.5 / height_in
+        axes = figure.add_axes((0.1, bottom, 0.46, tall))
+        side = figure.add_axes((0.6, bottom, 0.39, tall))
         _points(axes, family, rows)
         _key(side, family, rows)
         set_title(figure, family.title)
@@ -60,6 +62,7 @@ def draw_front(family: Family, rows: Sequence[Row], folder: Path) -> tuple[Path,
 
 def _points(axes: Axes, family: Family, rows: Sequence[Row]) -> None:
     axes.set(xscale="log", yscale="log", xlabel="processor time of a fit [µs]", ylabel=family.axis)
+    axes.yaxis.label.set_fontsize(8.0)
     chosen = [row for row in rows if row["front"] == "yes"]
     chosen.sort(key=lambda row: number(row, "us per fit"))
     times = [number(row, "us per fit") for row in chosen]
@@ -89,6 +92,10 @@ def _points(axes: Axes, family: Family, rows: Sequence[Row]) -> None:
     margin = (worst / low) ** 0.08 * 1.15
     axes.set_ylim(low / margin, worst * margin)
     axes.set_xlim(min(every) / 1.8, 1.8 * max(every))
+    if worst < 1e3 * low:
+        axes.yaxis.set_major_formatter(ScalarFormatter())
+        axes.yaxis.set_minor_formatter(LogFormatter(minor_thresholds=(2, 0.7)))
+    axes.tick_params(axis="both", which="minor", labelsize=7.0)
     handles = [
         Line2D([], [], color=c, marker=m, linestyle="", markersize=6, label=label)
         for kind, (c, m, label) in _KINDS.items()
@@ -98,7 +105,7 @@ def _points(axes: Axes, family: Family, rows: Sequence[Row]) -> None:
     axes.legend(
         handles=handles,
         loc="lower left",
-        bbox_to_anchor=(-0.02, 1.07),
+        bbox_to_anchor=(-0.2, 1.1),
         ncols=4,
         columnspacing=1.0,
         handletextpad=0.3,
@@ -118,7 +125,7 @@ def _key(axes: Axes, family: Family, rows: Sequence[Row]) -> None:
         y = 1.0 - (i + 0.4) * height
         colour, _, _ = _KINDS[str(row["kind"])]
         weight = "bold" if row["front"] == "yes" else "normal"
-        wrapped = textwrap.fill(str(row["contender"]), 27)
+        wrapped = textwrap.fill(str(row["contender"]), 30)
         axes.text(0.03, y, str(i), ha="right", va="center", fontsize=7, color=colour, weight="bold")
         style: dict[str, Any] = {"fontsize": 6.6, "fontweight": weight, "va": "center"}
         plain(axes.text(0.06, y, wrapped, linespacing=0.95, **style))

@@ -204,7 +204,7 @@ FAMILY = Family(
     "polynomial",
     f"Polynomials of degree 4 and 8 through {POINTS} points: time in hours, seconds, from 100 h",
     "relative error",
-    "relative rounding error of the worst coefficient or standard error",
+    "worst relative rounding error",
     rows,
     _why,
 )

@@ -140,7 +140,7 @@ FAMILY = Family(
     "power_law",
     f"Viscosity K(t) rate^m(t), 48 readings with {100 * NOISE:.0f} % noise, hours and seconds",
     "rmse %",
-    "RMSE of the viscosity at three places [%]",
+    "RMSE of the viscosity [%]",
     rows,
     _why,
 )

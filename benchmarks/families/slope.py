@@ -117,7 +117,7 @@ FAMILY = Family(
     "slope",
     f"Slope over 0-5 % strain, {SAMPLES} readings, noise correlated by {CORRELATION}",
     "interval error %",
-    "error of the 95 % interval: width and misses [% of the modulus]",
+    "interval error: width and misses [%]",
     rows,
     _why,
 )

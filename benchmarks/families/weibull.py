@@ -229,7 +229,7 @@ INTERVALS = Family(
     "weibull_interval",
     f"95 % intervals of Weibull shape, scale and B1, {N_INTERVAL} specimens",
     "interval error %",
-    "error of the 95 % interval: width and misses [%]",
+    "interval error: width and misses [%]",
     interval_rows,
     _why_interval,
 )

@@ -20,6 +20,8 @@ from pipeline.estimators.double_double import DoubleDouble, FloatArray, add, div
 from pipeline.estimators.fit import Fit, error_variance, weighted_residual_sd
 from pipeline.estimators.linear import solve_weighted
 
+_EPSILON = float(np.finfo(np.float64).eps)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PolynomialFit(Fit):
@@ -63,8 +65,11 @@ class PolynomialFit(Fit):
         """
         terms = basis(self._standard(x), self.degree)
         cofactor = np.einsum("...i,ij,...j->...", terms, self.chebyshev_cofactors, terms)
+        # Where x lie in narrow clusters the terms cancel: what rounding may have eaten is unknown.
+        size = np.abs(self.chebyshev_cofactors)
+        unknown = _EPSILON * np.einsum("...i,ij,...j->...", np.abs(terms), size, np.abs(terms))
         value = terms @ self.chebyshev_coefficients
-        return value, np.sqrt(self.error_variance * np.maximum(cofactor, 0.0))
+        return value, np.sqrt(self.error_variance * (np.maximum(cofactor, 0.0) + unknown))
 
     def derivative(self, x: ArrayLike) -> FloatArray:
         """Give dy/dx at x, of the shape of x.

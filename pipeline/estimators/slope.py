@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 from pipeline.core.errors import FitRefused
 
 FloatArray = NDArray[np.float64]
+IndexArray = NDArray[np.intp]
 
 FEW_INDEPENDENT = 8.0  # below this the simulated coverage of the interval leaves 93 to 97 %
 
+_FAR = 6.0  # standard deviations
 _ROUNDING = 1e-24  # part of the sum of squares that arithmetic alone leaves; it has no correlation
 
 
@@ -115,6 +117,27 @@ def fit_line(x: FloatArray, y: FloatArray) -> Line:
         residual_sd=math.sqrt(rss / (n - 2)),
         mean_x=mean_x,
         sum_squares_x=sxx,
+    )
+
+
+def outlying(x: FloatArray, y: FloatArray, line: Line) -> IndexArray:
+    """Find readings far off a line: residuals beyond 6 standard deviations of their majority.
+
+    The standard deviation is 1.4826 times the median of |residual|, which a minority of wrong
+    readings moves little. Of sound curves of 1000 readings one in 500 000 is accused.
+
+    Parameters
+    ----------
+    x, y : as fitted, shape (n,)
+    line : the fit
+
+    Returns
+    -------
+    indices, shape (k,)
+    """
+    off = np.abs(y - line.intercept - line.slope * x)
+    return np.flatnonzero(
+        off > _FAR * 1.4826 * max(float(np.median(off)), _ROUNDING * line.residual_sd)
     )
 
 

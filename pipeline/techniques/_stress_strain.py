@@ -24,7 +24,7 @@ from pipeline.core.records import (
 )
 from pipeline.core.stress_strain import IndexArray, StressStrain
 from pipeline.estimators.curve import reloads
-from pipeline.estimators.slope import FEW_INDEPENDENT, Line, fit_line
+from pipeline.estimators.slope import FEW_INDEPENDENT, Line, fit_line, outlying
 
 
 def _rising(window: tuple[float, float]) -> tuple[float, float]:
@@ -173,6 +173,20 @@ def correlation_flags(line: Line) -> tuple[Flag, ...]:
     )
 
 
+def outlying_flags(line: Line, strain: FloatArray, stress_Pa: FloatArray) -> tuple[Flag, ...]:
+    """Flag readings that lie far off the line of the others; they stay in the fit all the same."""
+    far = outlying(strain, stress_Pa, line)
+    if far.size == 0:
+        return ()
+    return (
+        Flag(
+            "outlying-readings",
+            f"{far.size} of {line.n} readings lie more than 6 standard deviations of the majority "
+            f"off the line, the first at {100 * strain[far[0]]:.3g} % strain; they pull the slope",
+        ),
+    )
+
+
 def modulus(
     key: str,
     line: Line,
@@ -198,7 +212,9 @@ def modulus(
             recording.source, curve.nominal_strain.size, int(inside[0]), int(inside[-1])
         ),
         diagnostics={**line_diagnostics(line), **diagnostics},
-        flags=flags + correlation_flags(line),
+        flags=flags
+        + correlation_flags(line)
+        + outlying_flags(line, curve.nominal_strain[inside], curve.nominal_stress_Pa[inside]),
     )
 
 
