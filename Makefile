@@ -6,6 +6,7 @@ PYTHON ?= python3.11
 
 .DEFAULT_GOAL := help
 .PHONY: all paper test check bench help clean
+.PHONY: all test check bench chart stability docs help clean
 
 all: $(VENV)/.runtime  ## reprocess raw/ into processed/: read, fit, refuse, publish cards
 	@$(BIN)/deamat all
@@ -22,6 +23,15 @@ check: $(VENV)/.dev  ## style, types and import contracts
 bench: $(VENV)/.dev  ## measure speed against rivals (ratios in one run)
 	@$(BIN)/python -m benchmarks.read_and_fit
 
+chart: $(VENV)/.dev  ## draw accuracy against speed of all estimators (simulated)
+	@$(BIN)/python -m benchmarks.chart
+
+stability: $(VENV)/.dev  ## map where estimators hold, flag, refuse or are silently wrong (simulated)
+	@$(BIN)/python -m benchmarks.stability
+
+docs: $(VENV)/.dev  ## write docs/benchmarks.md and the pictures of docs/methods anew
+	@$(BIN)/python -m benchmarks.chart --docs && $(BIN)/python -m benchmarks.stability --docs
+
 clean:  ## forget everything that can be made again
 	rm -rf $(VENV) && find processed -mindepth 1 ! -name README.md -delete
 
@@ -36,4 +46,4 @@ $(VENV)/.dev: $(VENV)/.runtime
 	@touch $@
 
 help:  ## print this chain
-	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "make %-8s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "make %-9s %s\n", $$1, $$2}' $(MAKEFILE_LIST)

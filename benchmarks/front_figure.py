@@ -125,7 +125,7 @@ def _key(axes: Axes, family: Family, rows: Sequence[Row]) -> None:
         y = 1.0 - (i + 0.4) * height
         colour, _, _ = _KINDS[str(row["kind"])]
         weight = "bold" if row["front"] == "yes" else "normal"
-        wrapped = textwrap.fill(str(row["contender"]), 30)
+        wrapped = textwrap.fill(str(row["contender"]), 25)
         axes.text(0.03, y, str(i), ha="right", va="center", fontsize=7, color=colour, weight="bold")
         style: dict[str, Any] = {"fontsize": 6.6, "fontweight": weight, "va": "center"}
         plain(axes.text(0.06, y, wrapped, linespacing=0.95, **style))

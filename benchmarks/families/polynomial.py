@@ -195,14 +195,14 @@ def _why(found: Sequence[Row]) -> str:
         f"coefficient and {number(ours, 'digits of errors'):.1f} of every standard error, whatever "
         f"unit and origin time has; numpy.polyfit keeps "
         f"{number(plain, 'digits of coefficients'):.1f} and "
-        f"{number(plain, 'digits of errors'):.1f}. A law is fitted once for a batch: "
-        f"{number(ours, 'us per fit') / 1e3:.1f} ms is nothing beside the reading of the file."
+        f"{number(plain, 'digits of errors'):.1f}. A law is fitted once for a batch of "
+        f"hours, so that {number(ours, 'us per fit') / 1e3:.1f} ms do not matter."
     )
 
 
 FAMILY = Family(
     "polynomial",
-    f"Polynomials of degree 4 and 8 through {POINTS} points: time in hours, seconds, from 100 h",
+    f"Polynomials of degree 4 and 8, {POINTS} points, several units and origins of time",
     "relative error",
     "worst relative rounding error",
     rows,

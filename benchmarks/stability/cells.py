@@ -6,6 +6,7 @@ Every cell is simulated some hundreds of times with a known truth. A 95 % interv
 
 from __future__ import annotations
 
+import math
 import zlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -106,7 +107,7 @@ class Cell:
     @property
     def _limit(self) -> float:
         """Ten percent, or what chance gives a sound interval in one of a thousand such cells."""
-        return max(SILENT_LIMIT, 0.05 + 3.1 * (0.05 * 0.95 / self.samples) ** 0.5)
+        return max(SILENT_LIMIT, 0.05 + 3.1 * math.sqrt(0.05 * 0.95 / self.samples))
 
     def row(self) -> Mapping[str, str | float | int]:
         """Give the cell as a row of a table, fractions in percent."""
