@@ -25,7 +25,7 @@ def text(document: Mapping[str, Any]) -> str:
         f"values     {document['values']} of {document['materials']} materials, "
         f"{len(document['refused'])} refused"
     )
-    lines += _some("refused", [_refusal(r) for r in document["refused"]])
+    lines += _some("refused", _refusals(document["refused"]))
     lines += _some("no reader", [f"{w['reason']}: {w['files']} files" for w in document["waiting"]])
     lines += _some("REJECTED", [r["reason"] for r in document["rejected"]])
     lines += _some("MANIFEST", [_violation(m) for m in document["manifest"]])
@@ -53,9 +53,18 @@ def _some(label: str, said: list[str]) -> list[str]:
     return shown
 
 
-def _refusal(refusal: Mapping[str, Any]) -> str:
-    who = refusal["specimen"] or refusal["campaign"]
-    return f"{refusal['material']} {refusal['key']} ({who}): {refusal['reason']}"
+def _refusals(refused: Iterable[Mapping[str, Any]]) -> list[str]:
+    """Say each refused value of a material once, with the first specimen's reason."""
+    groups: dict[tuple[str, str, str], list[Mapping[str, Any]]] = {}
+    for refusal in refused:
+        place = (refusal["campaign"], refusal["material"], refusal["key"])
+        groups.setdefault(place, []).append(refusal)
+    said = []
+    for (campaign, material, key), mine in groups.items():
+        who = mine[0]["specimen"] or campaign
+        more = f" and {len(mine) - 1} more" if len(mine) > 1 else ""
+        said.append(f"{material} {key} ({who}{more}): {mine[0]['reason']}")
+    return said
 
 
 def _violation(violation: Mapping[str, Any]) -> str:

@@ -23,7 +23,8 @@ from pipeline.twin.viscosity import viscosity_part
 from pipeline.twin.writers import manifest
 
 NAME = "sylgard-2022-twin"
-SEED = 2033  # the first from 2022 on whose every 95 % interval holds its truth: docs/adr/0007-committed-seed.md
+# The first from 2022 on whose every 95 % interval holds its truth: docs/adr/0007-committed-seed.md
+SEED = 2033
 
 # One file of this package per technique, each with its own random streams.
 PARTS: tuple[Callable[[int], Part], ...] = (
