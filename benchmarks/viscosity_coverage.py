@@ -1,12 +1,13 @@
 """How often the intervals of the room of viscosity hold the truth: many simulated campaigns.
 
-Run: python -m benchmarks.viscosity_coverage [campaigns] [workers]
+Run: python -m benchmarks.viscosity_coverage [campaigns] [workers] [material ...]
 """
 
 from __future__ import annotations
 
 import sys
 from collections import Counter
+from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 
 import numpy as np
@@ -93,9 +94,9 @@ def law_hits(truth: TrueViscosity, law: Law) -> list[bool]:
     return hits
 
 
-def main(campaigns: int, workers: int) -> None:
+def main(campaigns: int, workers: int, materials: Sequence[str]) -> None:
     """Print coverage per material and key, and which forms the laws took."""
-    tasks = [(seed, m) for m in true_viscosities() for seed in range(1, campaigns + 1)]
+    tasks = [(seed, m) for m in materials or true_viscosities() for seed in range(1, campaigns + 1)]
     total: Counter[tuple[str, str, bool]] = Counter()
     with ProcessPoolExecutor(workers) as pool:
         for counts in pool.map(one, tasks, chunksize=5):
@@ -107,4 +108,6 @@ def main(campaigns: int, workers: int) -> None:
 
 
 if __name__ == "__main__":
-    main(*(int(a) for a in (sys.argv[1:] + ["200", "2"][len(sys.argv) - 1 :])))
+    given = sys.argv[1:]
+    campaigns, workers = (int(a) for a in (given[:2] + ["200", "2"][len(given[:2]) :]))
+    main(campaigns, workers, given[2:])

@@ -7,16 +7,20 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.special import stdtridf
 
 from pipeline.core.laws import FORMS, POLYNOMIAL, POWER_LAW_FLUID
 from pipeline.core.properties import property_key
 from pipeline.core.records import FloatArray, Law, Origin, Specimen
+from pipeline.estimators.mean import coverage_factor
 from pipeline.techniques.viscosity.config import ViscosityConfig
 from pipeline.techniques.viscosity.fluid import fit_fluid, is_swept
 from pipeline.techniques.viscosity.newtonian import fit_newtonian
 from pipeline.techniques.viscosity.time_law import TimeLaw
 from pipeline.techniques.viscosity.values import CONSISTENCY, INDEX, VISCOSITY
 from pipeline.techniques.viscosity.window import Windowed
+
+_CHECKED_TIMES = 5
 
 
 def fit_law(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeLaw:
@@ -87,8 +91,8 @@ def laws_of(
     """Make the laws of a card: viscosity, and K and n of a power-law fluid each by itself.
 
     The covariance has the scatter about the law, the scatter of the levels of the runs over the
-    root of their number, and the calibration; its degrees of freedom are those in the middle of
-    the range (Welch-Satterthwaite).
+    root of their number, and the calibration; its degrees of freedom are the fewest anywhere in
+    the range.
     """
     covariance, dof = _whole_covariance(law, levels)
     whole = Law(
@@ -148,15 +152,29 @@ def _whole_covariance(law: TimeLaw, levels: FloatArray) -> tuple[FloatArray, flo
     if n == 1:
         return law.covariance + drift, float(law.dof)
     upwards = _growth(law)
-    level_variance = float(np.var(levels, ddof=1)) / n
-    level = level_variance * np.outer(upwards, upwards)
-    _, slopes = law.at(0.5 * (law.valid[0] + law.valid[1]))
-    scatter_u2, level_u2, drift_u2 = (
-        max(float(slopes @ c @ slopes), 0.0) for c in (law.covariance, level, drift)
-    )
-    terms = level_u2**2 / (n - 1) + scatter_u2**2 / law.dof
-    dof = (scatter_u2 + level_u2 + drift_u2) ** 2 / terms if terms > 0 else math.inf
+    level = float(np.var(levels, ddof=1)) / n * np.outer(upwards, upwards)
+    factors = []
+    for time_s in np.linspace(*law.valid, _CHECKED_TIMES).tolist():
+        _, slopes = law.at(time_s)
+        scatter_u2, level_u2, drift_u2 = (
+            max(float(slopes @ c @ slopes), 0.0) for c in (law.covariance, level, drift)
+        )
+        factors.append(_factor(scatter_u2, level_u2, drift_u2, law.dof, n))
+    dof = float(stdtridf(0.975, max(factors)))
     return law.covariance + level + drift, min(dof, 1e6)
+
+
+def _factor(scatter_u2: float, level_u2: float, drift_u2: float, dof: int, n: int) -> float:
+    """Half width of the 95 % interval in combined standard uncertainties.
+
+    Welch-Satterthwaite, but no narrower than what the levels alone would ask for: as in
+    `estimators.mean`, further errors cannot make a mean better known.
+    """
+    whole = scatter_u2 + level_u2 + drift_u2
+    terms = level_u2**2 / (n - 1) + scatter_u2**2 / dof
+    welch = coverage_factor(whole**2 / terms) if terms > 0 else coverage_factor(math.inf)
+    alone = coverage_factor(n - 1.0) * math.sqrt(level_u2 / whole) if whole > 0 else 0.0
+    return max(welch, alone)
 
 
 def _growth(law: TimeLaw) -> FloatArray:
