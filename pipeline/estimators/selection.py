@@ -1,15 +1,20 @@
-"""Which of several laws the data support: the cheapest that no costlier one clearly beats."""
+"""Which of several laws to use: the cheapest that the data support, or that answers well enough.
+
+`choose` asks the data: the cheapest law that no costlier one clearly beats. `choose_for` asks a
+question as well: of the laws up to that one, the cheapest whose expected error is tolerable.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Generic, TypeVar
 
 import numpy as np
 
-from pipeline.core.errors import FitRefused
+from pipeline.core.errors import FitRefused, OutOfRange
 from pipeline.estimators.fit import Fit
 
 # A costlier law must lower AICc by more than this against a cheaper one: the data must support it
@@ -181,3 +186,130 @@ def _reason(scored: Sequence[tuple[float, str]], index: int) -> str:
         return f"{told}; nothing cheaper was fitted"
     runner_score, runner = min(scored[:index])
     return f"{told}; the best cheaper law, {runner}, has {runner_score:.1f}"
+
+
+@dataclass(frozen=True, slots=True)
+class Answered:
+    """One candidate's answer to the question.
+
+    Parameters
+    ----------
+    name, cost : as the caller gave them
+    value : its answer; None where it has none
+    error : root of expected squared error: its own uncertainty and its bias `[unit of value]`
+    refusal : why there is no answer, else empty
+    """
+
+    name: str
+    cost: float
+    value: float | None
+    error: float | None
+    refusal: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Enough(Generic[AnyFit]):
+    """The cheapest law that is good enough for a question.
+
+    Parameters
+    ----------
+    name, fit, value, error : the law chosen, its answer and expected error
+    tried : all candidates, in the order given
+    supported : what the data alone say, as `choose` gives it
+    finer, change : the next law that answered, and by how much it answers higher; no law and 0
+        where there is none
+    reason : one sentence with the numbers that decided
+    """
+
+    name: str
+    fit: AnyFit
+    value: float
+    error: float
+    tried: tuple[Answered, ...]
+    supported: Choice[AnyFit]
+    finer: str
+    change: float
+    reason: str
+
+
+def choose_for(
+    candidates: Sequence[tuple[str, float, Callable[[], AnyFit]]],
+    question: Callable[[AnyFit], tuple[float, float]],
+    tolerance: float,
+) -> Enough[AnyFit]:
+    r"""Take the cheapest law whose expected error on the question is within the tolerance.
+
+    With the answer $v_s \pm u_s$ of the law that the data support (`choose`), a cheaper one of
+    answer $v \pm u$ has the expected squared error
+
+    $$ u^2 + \max\big((v - v_s)^2 - \max(u_s^2 - u^2, 0),\ 0\big) : $$
+
+    part of the difference between nested laws is the noise that only the richer one carries. Laws
+    costlier than the supported one are recorded and never taken: the data do not ask for them.
+
+    Parameters
+    ----------
+    candidates : name, cost (in any unit; parameters, or seconds) and fit, the cheapest first
+    question : a fit to its answer and the standard uncertainty of that
+    tolerance : largest expected error that will do `[unit of the answer]`
+
+    Raises
+    ------
+    FitRefused : costs that fall, a tolerance that is not positive, as in `choose`, or no law
+        within the tolerance
+    """
+    costs = [cost for _, cost, _ in candidates]
+    if any(b < a for a, b in pairwise(costs)):
+        raise FitRefused(f"candidate laws must come with the cheapest first, not at costs {costs}")
+    if not tolerance > 0.0:
+        raise FitRefused(f"a tolerance must be positive, not {tolerance:g}")
+    fits = [(name, _once(make)) for name, _, make in candidates]
+    supported = choose(fits)
+    best = [name for name, _ in fits].index(supported.name)
+    v_s, u_s = question(supported.fit)
+    answered: list[tuple[Answered, AnyFit | None]] = []
+    for (name, make), cost in zip(fits, costs, strict=True):
+        try:
+            fit = make()
+            v, u = question(fit)
+        except (FitRefused, OutOfRange) as refusal:
+            answered.append((Answered(name, cost, None, None, str(refusal)), None))
+            continue
+        bias2 = max((v - v_s) ** 2 - max(u_s**2 - u**2, 0.0), 0.0)
+        answered.append((Answered(name, cost, v, math.sqrt(u**2 + bias2)), fit))
+    for i, (answer, fitted) in enumerate(answered[: best + 1]):
+        v_i, error = answer.value, answer.error
+        if fitted is None or v_i is None or error is None or not error <= tolerance:
+            continue
+        finer = next((a for a, _ in answered[i + 1 :] if a.value is not None), None)
+        change = 0.0 if finer is None or finer.value is None else finer.value - v_i
+        told = "no finer law" if finer is None else f"{finer.name} would change it by {change:.3g}"
+        return Enough(
+            answer.name,
+            fitted,
+            v_i,
+            error,
+            tuple(a for a, _ in answered),
+            supported,
+            "" if finer is None else finer.name,
+            change,
+            f"{answer.name}: expected error {error:.3g}, within {tolerance:g}; {told}",
+        )
+    least = min(a.error for a, _ in answered[: best + 1] if a.error is not None)
+    raise FitRefused(
+        f"no law that the data support answers within {tolerance:g}: the least expected error is "
+        f"{least:.3g}; measure more points, or ask for less",
+        {"least_error": least, "tolerance": tolerance},
+    )
+
+
+def _once(make: Callable[[], AnyFit]) -> Callable[[], AnyFit]:
+    """Fit at most once, whoever asks; a refusal is not kept, for it is cheap."""
+    kept: list[AnyFit] = []
+
+    def fit() -> AnyFit:
+        if not kept:
+            kept.append(make())
+        return kept[0]
+
+    return fit

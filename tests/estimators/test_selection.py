@@ -9,7 +9,14 @@ from pipeline.core.errors import FitRefused
 from pipeline.estimators.checks import ErrorScale
 from pipeline.estimators.linear import LinearFit, fit_linear
 from pipeline.estimators.polynomial import PolynomialFit, fit_polynomial
-from pipeline.estimators.selection import DECISIVE, aicc, choose, leave_one_out_sd
+from pipeline.estimators.selection import (
+    DECISIVE,
+    Enough,
+    aicc,
+    choose,
+    choose_for,
+    leave_one_out_sd,
+)
 
 HOURS = np.linspace(1, 12, 23)
 # Sylgard 184 (10:1) and 182 (10:1), Sikulskyi et al. 2022, Table 2.
@@ -162,3 +169,77 @@ def test_scores_of_different_data_are_not_compared() -> None:
         assert str(refusal.value) == (
             "candidate laws must be fitted to the same data with the same errors"
         )
+
+
+def asked(y: np.ndarray, at: float, tolerance: float) -> Enough[PolynomialFit]:
+    def question(fit: PolynomialFit) -> tuple[float, float]:
+        value, u = fit(at)
+        return float(value), float(u)
+
+    priced = [(name, float(k + 1), make) for k, (name, make) in enumerate(orders(y, 6))]
+    return choose_for(priced, question, tolerance)
+
+
+def test_the_cheapest_law_within_the_tolerance_answers() -> None:
+    rng = np.random.default_rng(26)
+    y = QUARTIC + 0.02 * rng.normal(size=len(HOURS))
+    fine, coarse = asked(y, 6.5, 0.1), asked(y, 6.5, 8.0)
+    assert fine.supported.name == coarse.supported.name == "order 4"
+    assert fine.name == "order 4"
+    assert int(coarse.name.removeprefix("order ")) < 3
+    assert [t.cost for t in coarse.tried] == [1.0, 2, 3, 4, 5, 6, 7]
+    assert coarse.error <= 8.0
+    truth = float(np.polynomial.polynomial.polyval(6.5, [2.5, 0.493, 0.207, -0.0674, 0.00743]))
+    assert abs(coarse.value - truth) < 2 * 8.0
+    assert abs(fine.value - truth) < 4 * fine.error
+
+
+def test_the_answer_says_what_a_finer_law_would_change() -> None:
+    rng = np.random.default_rng(27)
+    found = asked(QUARTIC + 0.02 * rng.normal(size=len(HOURS)), 6.5, 8.0)
+    values = {t.name: t.value for t in found.tried}
+    finer = values[found.finer]
+    assert finer is not None
+    assert found.finer == f"order {found.fit.degree + 1}"
+    assert found.change == pytest.approx(finer - found.value)
+    assert found.reason == (
+        f"{found.name}: expected error {found.error:.3g}, within 8; "
+        f"{found.finer} would change it by {found.change:.3g}"
+    )
+
+
+def test_a_tolerance_never_buys_a_law_that_the_data_do_not_support() -> None:
+    rng = np.random.default_rng(28)
+    for _ in range(30):
+        found = asked(LINE + 0.05 * rng.normal(size=len(HOURS)), 6.5, 0.05)
+        assert found.fit.degree <= found.supported.fit.degree
+
+
+def test_the_expected_error_is_the_error_to_be_expected() -> None:
+    rng = np.random.default_rng(29)
+    truth = float(np.polynomial.polynomial.polyval(10.0, [1.64, 0.267]))
+    squares, expected = [], []
+    for _ in range(150):
+        found = asked(LINE + 0.2 * rng.normal(size=len(HOURS)), 10.0, 5.0)
+        squares.append((found.value - truth) ** 2)
+        expected.append(found.error**2)
+    assert 0.6 < np.mean(expected) / np.mean(squares) < 1.7
+
+
+def test_what_cannot_be_asked_is_refused() -> None:
+    with pytest.raises(FitRefused) as refusal:
+        asked(QUARTIC + np.where(np.arange(23) % 2 == 0, 1.0, -1.0), 6.5, 0.01)
+    assert str(refusal.value).startswith(
+        "no law that the data support answers within 0.01: the least expected error is "
+    )
+    with pytest.raises(FitRefused, match=r"^a tolerance must be positive, not 0$"):
+        asked(QUARTIC, 6.5, 0.0)
+    line = orders(LINE, 1)
+    dearest_first = [
+        (name, cost, make) for (name, make), cost in zip(line, (2.0, 1.0), strict=True)
+    ]
+    with pytest.raises(FitRefused) as refusal:
+        choose_for(dearest_first, lambda _: (0.0, 0.0), 1.0)
+    assert str(refusal.value) == (
+        "candidate laws must come with the cheapest first, not at costs [2.0, 1.0]"
+    )
