@@ -66,5 +66,5 @@ def test_an_uncertainty_is_never_less_than_what_rounding_hides() -> None:
         x = np.repeat([1.0, 6.0, 12.0], 8) + 1e-8 * rng.uniform(0.0, 1.0, 24)
         fit = fit_polynomial(x, 2.0 + 0.05 * rng.standard_normal(24), 4)
         value, u = fit(x[8])
-        hits += abs(value - 2.0) <= 2.1 * u
+        hits += bool(abs(value - 2.0) <= 2.1 * u)
     assert hits >= 50
