@@ -75,7 +75,7 @@ def cards() -> tuple[MaterialCard, ...]:
                     age="after cure",
                 ),
             ),
-            laws=(law("viscosity", (2.5, 0.493, 0.2), "sylgard-184-10to1", "exponential"),),
+            laws=(law("viscosity", (2.5, 0.2), "sylgard-184-10to1", "exponential"),),
             campaigns=(TWIN, LAB),
         ),
     )  # fmt: skip
