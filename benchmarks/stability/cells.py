@@ -154,8 +154,8 @@ def cells_of(estimator: Estimator, samples: int = 0, reduced: bool = False) -> l
 def _simulate(
     estimator: Estimator, failure: str, n: int, setting: str, draw: Draw, samples: int
 ) -> list[Cell]:
-    """Simulate one cell for all questions; the seed is that of its name."""
-    name = f"{estimator.key}/{failure}/{n}/{setting}"
+    """Simulate one cell for all questions, all settings of a failure from the same numbers."""
+    name = f"{estimator.key}/{failure}/{n}"
     rng = np.random.default_rng(zlib.crc32(name.encode()))
     drawn = [draw(rng, n) for _ in range(samples)]
     told = estimator.ask([sample for sample, _ in drawn])

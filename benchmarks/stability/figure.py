@@ -41,7 +41,7 @@ def draw_map(
     name = "map_" + re.sub(r"[^a-z0-9]+", "_", f"{estimator.key} {question}".lower())
     lines = _lines(mine)
     with figure_style(name):
-        height_in = _ROW_in * len(lines) + 1.15
+        height_in = _ROW_in * len(lines) + 0.9
         figure = Figure(figsize=(PAGE_WIDTH_in, height_in))
         FigureCanvasAgg(figure)
         axes = figure.add_axes((0.01, 0.32 / height_in, 0.98, _ROW_in * len(lines) / height_in))
@@ -75,7 +75,7 @@ def _lines(cells: Sequence[Cell]) -> list[tuple[str, str, list[tuple[str, Cell]]
 def _draw_lines(axes: Axes, lines: Sequence[tuple[str, str, list[tuple[str, Cell]]]]) -> None:
     for y, (failure, size, row) in enumerate(lines):
         if failure and y:
-            axes.plot([-_LABELS, _COLUMNS], [y, y], color="#888888", linewidth=0.5)
+            axes.plot([-_LABELS, _COLUMNS], [y, y], color="#888888", linewidth=0.5, linestyle="-")
         plain(axes.text(-_LABELS, y + 0.5, failure, fontsize=7, fontweight="bold", va="center"))
         axes.text(-0.06, y + 0.5, size, fontsize=6.5, va="center", ha="right", color="#444444")
         width = _COLUMNS / len(row)

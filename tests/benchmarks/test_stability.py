@@ -11,7 +11,7 @@ from benchmarks.stability.cells import Cell, Estimator, Failure, Told, cells_of,
 from benchmarks.stability.estimators import ESTIMATORS
 from benchmarks.stability.known import reason_for
 
-_SAMPLES = {"nonlinear model": 12, "power law": 15, "polynomial of chosen order": 25, "Weibull": 40}
+_SAMPLES = {"nonlinear model": 8, "power law": 10, "polynomial of chosen order": 12, "Weibull": 25}
 
 
 @pytest.mark.parametrize("estimator", ESTIMATORS, ids=lambda e: e.key)
