@@ -13,7 +13,7 @@ _WEAK = (
 )
 _FORM = (
     "samples this small do not tell the forms apart (20 of a lognormal: one in five), and the "
-    "quantile lies below all of them; the card says `extrapolated`, which stands on sound samples too"
+    "quantile lies below all of them; the card says `extrapolated`, as on sound samples too"
 )
 _CORRELATED = (
     "a polynomial follows slow drift, and the rest of a short series looks independent; only a "
