@@ -37,7 +37,7 @@ def draw_map(
 ) -> tuple[Path, Path]:
     """Draw the map of one question and write it as SVG and PNG."""
     mine = [c for c in cells if (c.estimator, c.question) == (estimator.key, question)]
-    title = f"Stability of {estimator.key}: {question}"
+    title = f"{estimator.key[0].upper()}{estimator.key[1:]}: {question}"
     name = "map_" + re.sub(r"[^a-z0-9]+", "_", f"{estimator.key} {question}".lower())
     lines = _lines(mine)
     with figure_style(name):
@@ -54,7 +54,7 @@ def draw_map(
         figure.legend(
             handles=handles, loc="lower left", ncols=4, columnspacing=1.2, handlelength=1.2
         )
-        set_title(figure, f"{title} (number: % of samples missed without a flag)")
+        set_title(figure, f"{title} (number: % of samples silently missed)")
         return save_figure(figure, axes, folder, name, title, synthetic=True)
 
 

@@ -142,7 +142,7 @@ _ALIKE = (
         tuple((f"{v:g}", _drawn(origin=v)) for v in (1e2, 1e4, 1e6, 1e8, 1e10)),
     ),
     Failure(
-        "three clusters, half width [h]",
+        "clusters of width [h]",
         tuple((f"{v:g}", _drawn(clusters=v)) for v in (1.0, 1e-2, 1e-4, 1e-6, 1e-8)),
     ),
     Failure(
