@@ -40,17 +40,21 @@ _KNOWN: dict[tuple[str, str], tuple[str, tuple[str, ...]]] = {
         tuple(f"starts at {part:g}" for part in (0.1, 0.3, 0.5, 0.7, 0.9)),
     ),
     ("polynomial of chosen order", "noise [Pa s]"): (
-        "noise hides the higher orders; the interval is that of the law chosen and does not know "
-        "that another one might be right",
+        (
+            "noise hides the higher orders; the interval is that of the law chosen and does not know "
+            "that another one might be right"
+        ),
         ("1", "10"),
     ),
     ("polynomial of chosen order", "clusters of width [h]"): (
-        "there are no readings between the clusters: the simplest law through them fits, and "
-        "nothing says that it is wrong elsewhere",
+        (
+            "there are no readings between the clusters: the simplest law through them fits, and "
+            "nothing says that it is wrong elsewhere"
+        ),
         ("0.01", "0.0001", "1e-06", "1e-08"),
     ),
     ("nonlinear model", "second decay"): (
-        "one decay with another rate and constant takes its place but for residuals below the noise",
+        "one decay of another rate takes the place of two, but for residuals below the noise",
         ("0.3", "1"),
     ),
     ("power law", "readings at half"): (_MAJORITY, ("10 %", "30 %")),
@@ -60,8 +64,10 @@ _KNOWN: dict[tuple[str, str], tuple[str, tuple[str, ...]]] = {
     ),
     ("compression", "readings at half force"): (_MAJORITY, ("30 %",)),
     ("compression", "toe up to strain"): (
-        "the zero of the tangent lies inside the toe, whose end is then still in the window; the "
-        "flag `toe` stands on the plain modulus",
+        (
+            "the zero of the tangent lies inside the toe, whose end is then still in the window; the "
+            "flag `toe` stands on the plain modulus"
+        ),
         ("1 %",),
     ),
     ("linear model", "values at half"): (_MAJORITY, ("30 %",)),
