@@ -17,7 +17,7 @@ from pipeline.core.atomic import write_atomically
 from pipeline.report.style import MARK_MEANING
 
 IMAGES = Path("docs/methods/img")
-_COLOURS = 48
+_COLOURS = 128
 _HEAD = """\
 # Benchmarks
 

@@ -43,7 +43,7 @@ def draw_front(family: Family, rows: Sequence[Row], folder: Path) -> tuple[Path,
     rows : as `with_front` gives them
     """
     name = f"chart_{family.key}"
-    under = textwrap.wrap(family.why(rows), _CHARACTERS)
+    under = textwrap.wrap(family.why(rows).replace(" %", "\N{NO-BREAK SPACE}%"), _CHARACTERS)
     foot_in = _LINE_in * len(under) + 0.12
     with figure_style(name):
         height_in = 3.7 + foot_in
@@ -106,7 +106,7 @@ def _points(axes: Axes, family: Family, rows: Sequence[Row]) -> None:
         handles=handles,
         loc="lower left",
         bbox_to_anchor=(-0.2, 1.1),
-        ncols=4,
+        ncols=5,
         columnspacing=1.0,
         handletextpad=0.3,
         borderpad=0.0,
@@ -130,8 +130,12 @@ def _key(axes: Axes, family: Family, rows: Sequence[Row]) -> None:
         style: dict[str, Any] = {"fontsize": 6.6, "fontweight": weight, "va": "center"}
         plain(axes.text(0.06, y, wrapped, linespacing=0.95, **style))
         axes.text(0.80, y, _time(number(row, "us per fit")), ha="right", **style)
-        axes.text(1.0, y, f"{number(row, family.error):.2g}", ha="right", **style)
+        axes.text(1.0, y, _error(number(row, family.error)), ha="right", **style)
     axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.0))
+
+
+def _error(value: float) -> str:
+    return f"{value:.0f}" if value >= 10.0 else f"{value:.2g}"
 
 
 def _time(us: float) -> str:

@@ -198,8 +198,8 @@ def _rival_intervals(method: Callable[..., RivalIntervals]) -> Callable[[FloatAr
 def _why_point(found: Sequence[Row]) -> str:
     ours, batched = default_of(found), named(found, "maximum likelihood, batched")
     return (
-        f"Maximum likelihood has the least error of scale and B10 of those that take "
-        f"censored specimens, RMSE {number(ours, 'rmse %'):.2f} %, and its intervals are exact. "
+        f"No other way has less error of scale and B10 than maximum likelihood, "
+        f"RMSE {number(ours, 'rmse %'):.2f} %, and its intervals are exact. "
         f"Alone it takes {number(ours, 'us per fit'):.0f} us, batched "
         f"{number(batched, 'us per fit'):.1f} us: {1e6 / number(batched, 'us per fit'):.2g} fits a "
         f"second on one core."

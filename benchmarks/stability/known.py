@@ -41,8 +41,8 @@ _KNOWN: dict[tuple[str, str], tuple[str, tuple[str, ...]]] = {
     ),
     ("polynomial of chosen order", "noise [Pa s]"): (
         (
-            "noise hides the higher orders; the interval is that of the law chosen and does not know "
-            "that another one might be right"
+            "noise hides the higher orders; the interval is that of the law chosen and does "
+            "not know that another one might be right"
         ),
         ("1", "10"),
     ),
@@ -65,8 +65,8 @@ _KNOWN: dict[tuple[str, str], tuple[str, tuple[str, ...]]] = {
     ("compression", "readings at half force"): (_MAJORITY, ("30 %",)),
     ("compression", "toe up to strain"): (
         (
-            "the zero of the tangent lies inside the toe, whose end is then still in the window; the "
-            "flag `toe` stands on the plain modulus"
+            "the zero of the tangent lies inside the toe, whose end is then still in the window; "
+            "the flag `toe` stands on the plain modulus"
         ),
         ("1 %",),
     ),
