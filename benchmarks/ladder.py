@@ -5,6 +5,8 @@
 Random designs (SYNTHETIC: drawn, nobody made them) are put to every rung; the top one, the
 elastica, is the reference, so errors are those of the simplification, not against a laboratory. The
 chart, the map and their numbers go to processed/benchmarks/.
+elastica, is the reference, so errors are those of the simplification and not those against a
+laboratory. The chart, the map and their numbers go to processed/benchmarks/.
 """
 
 from __future__ import annotations
@@ -12,7 +14,6 @@ from __future__ import annotations
 import argparse
 import io
 import math
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -22,9 +23,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from benchmarks.timing import RESULTS, Row, stay_on_one_core, table, write_results
+from benchmarks.timing import RESULTS, Row, interleaved, stay_on_one_core, table, write_results
 from pipeline.actuator.beam import Beam, actuate, weight
-from pipeline.actuator.ladder import NEGLECTS, Actuator, Answer, Rung, choose, evaluate
+from pipeline.actuator.ladder import NEGLECTS, Actuator, Aim, Answer, Rung, choose, evaluate
 from pipeline.actuator.ranges import Reals
 from pipeline.actuator.stack import FIRST_LAYER_DOWN, ON_EDGE, Layer, Orientation, Role, Stack
 from pipeline.actuator.strain import pull_in_voltage
@@ -95,15 +96,20 @@ def tip_error(answer: Answer, reference: Answer, length_m: float) -> float:
     return apart / length_m
 
 
-def microseconds(work: Callable[[Actuator], object], on: Sequence[Draw]) -> float:
-    """Give the least processor time per design of five rounds `[us]`."""
-    best = math.inf
-    for _ in range(5):
-        start = time.process_time()
-        for d in on:
-            work(d.actuator)
-        best = min(best, time.process_time() - start)
-    return 1e6 * best / len(on)
+def costs_us(draws: Sequence[Draw]) -> dict[str, float]:
+    """Give the processor time of every model for one design, the least of five rounds `[us]`."""
+    some = [d.actuator for d in draws[:TIMED]]
+
+    def evaluating(rung: Rung) -> Callable[[Actuator], object]:
+        return lambda actuator: evaluate(actuator, rung)
+
+    def choosing(tolerance: float) -> Callable[[Actuator], object]:
+        return lambda actuator: choose(actuator, tolerance)
+
+    contenders: dict[str, Callable[[Actuator], object]] = {r: evaluating(r) for r in NEGLECTS}
+    contenders |= {f"choose to {t:g}": choosing(t) for t in TOLERANCES}
+    seconds = interleaved(contenders, some, rounds=5)
+    return {name: 1e6 * min(rounds) / len(some) for name, rounds in seconds.items()}
 
 
 def row(name: str, cost_us: float, apart: Floats, bent: Floats) -> Row:
@@ -122,22 +128,21 @@ def row(name: str, cost_us: float, apart: Floats, bent: Floats) -> Row:
 
 def rungs(draws: Sequence[Draw]) -> list[Row]:
     """Measure every rung, and `choose` at several tolerances."""
-    some = draws[:TIMED]
+    costs = costs_us(draws)
     rows = []
     for rung in NEGLECTS:
         answers = [evaluate(d.actuator, rung) for d in draws]
-        cost = microseconds(lambda a, r=rung: evaluate(a, r), some)  # type: ignore[misc]  # mypy cannot type the default
-        rows.append(_errors(rung, cost, answers, draws))
+        rows.append({**_errors(rung, costs[rung], answers, draws), "within": ""})
     for tolerance in TOLERANCES:
-        chosen = [choose(d.actuator, tolerance) for d in draws]
-        cost = microseconds(lambda a, t=tolerance: choose(a, t), some)  # type: ignore[misc]  # as above
-        found = _errors(f"choose to {tolerance:g}", cost, [c.answer for c in chosen], draws)
-        kept = np.mean([
-            tip_error(c.answer, d.reference, d.actuator.length_m) <= tolerance
-            for c, d in zip(chosen, draws, strict=True)
-        ])  # fmt: skip
-        rows.append({**found, "within": float(kept)})
-    return [{"within": "", **r} for r in rows]
+        name = f"choose to {tolerance:g}"
+        answers = [choose(d.actuator, tolerance).answer for d in draws]
+        apart = [
+            tip_error(a, d.reference, d.actuator.length_m)
+            for a, d in zip(answers, draws, strict=True)
+        ]
+        kept = float(np.mean(np.array(apart) <= tolerance))
+        rows.append({**_errors(name, costs[name], answers, draws), "within": kept})
+    return rows
 
 
 def _errors(name: str, cost: float, answers: Sequence[Answer], draws: Sequence[Draw]) -> Row:
@@ -191,24 +196,29 @@ def _turning(curvature_per_m: float) -> float:
     return low
 
 
-SWEEPS: dict[str, tuple[str, Callable[[float], Actuator], Floats]] = {
-    "drive": ("voltage over that of pull-in", by_drive, np.linspace(0.03, 0.99, 33)),
-    "electrodes": ("stiffness of electrodes over film", by_electrode, np.geomspace(1e-3, 30, 33)),
-    "weight": ("length over elasto-gravity length", by_weight, np.geomspace(0.1, 1.9, 33)),
-    "turn": ("turn of the tip [rad]", by_turn, np.geomspace(0.03, 1.3, 33)),
+SWEEPS: dict[str, tuple[str, Callable[[float], Actuator], Floats, Aim]] = {
+    "drive": ("voltage over that of pull-in", by_drive, np.linspace(0.03, 0.99, 33), "curvature"),
+    "electrodes": (
+        "stiffness of electrodes over film",
+        by_electrode,
+        np.geomspace(1e-3, 30, 33),
+        "curvature",
+    ),
+    "weight": ("length over elasto-gravity length", by_weight, np.geomspace(0.1, 1.9, 33), "tip"),
+    "turn": ("turn of the tip [rad]", by_turn, np.geomspace(0.03, 1.3, 33), "tip"),
 }
 
 
-def sweep(make: Callable[[float], Actuator], points: Floats) -> dict[Rung, Floats]:
-    """Give the error of the tip along a sweep, relative to the way that the tip goes."""
+def sweep(make: Callable[[float], Actuator], points: Floats, aim: Aim) -> dict[Rung, Floats]:
+    """Give the error along a sweep: of the tip in lengths, or of the curvature, relative."""
     found: dict[Rung, list[float]] = {rung: [] for rung in NEGLECTS}
     for x in points.tolist():
         actuator = make(x)
         top = evaluate(actuator, "elastica")
-        way = math.hypot(top.tip_x_m - actuator.length_m, top.tip_y_m)
         for rung in NEGLECTS:
-            apart = tip_error(evaluate(actuator, rung), top, actuator.length_m)
-            found[rung].append(apart * actuator.length_m / way)
+            answer = evaluate(actuator, rung)
+            bent = abs(answer.curvature_per_m / top.curvature_per_m - 1.0)
+            found[rung].append(tip_error(answer, top, actuator.length_m) if aim == "tip" else bent)
     return {rung: np.array(errors) for rung, errors in found.items()}
 
 
@@ -251,13 +261,13 @@ def validity_map(errors: dict[str, dict[Rung, Floats]]) -> Figure:
     """Draw for each cause of trouble where each rung crosses one percent."""
     figure = Figure(figsize=(6.3, 6.0), layout="constrained")
     panels = np.ravel(figure.subplots(2, 2, sharey=True))
-    for axes, (key, (label, _, points)) in zip(panels, SWEEPS.items(), strict=True):
+    for axes, (key, (label, _, points, aim)) in zip(panels, SWEEPS.items(), strict=True):
         _panel(axes, points, errors[key])
         axes.set_xlabel(label)
+        words = "tip [lengths]" if aim == "tip" else "curvature, relative"
+        axes.set_title(f"error of the {words}", fontsize=8.0)
         if key != "drive":
             axes.set_xscale("log")
-    for axes in panels[::2]:
-        axes.set_ylabel("error of the tip over its way")
     handles, labels = panels[0].get_legend_handles_labels()
     figure.suptitle(
         "SYNTHETIC: one strip (304 um on 446 um, 0.957 MPa), one number at a time", fontsize=8.5
@@ -301,12 +311,12 @@ def main(designs: int = 3000) -> None:
     print(f"SYNTHETIC: {len(draws)} random designs; {lost} more buckle, snap or coil: no answer")
     print(table(rows))
     write_results("ladder", rows, ("numpy", "scipy"))
-    errors = {key: sweep(make, points) for key, (_, make, points) in SWEEPS.items()}
+    errors = {key: sweep(make, points, aim) for key, (_, make, points, aim) in SWEEPS.items()}
     limits: list[Row] = [
         {"rung": rung, **{key: first_beyond(SWEEPS[key][2], errors[key][rung]) for key in SWEEPS}}
         for rung in NEGLECTS
     ]
-    print("\nwhere the error first passes one percent of the way of the tip")
+    print("\nwhere the error first passes one percent")
     print(table(limits))
     write_results("ladder_validity", limits, ("numpy", "scipy"))
     with figure_style("ladder"):

@@ -60,12 +60,12 @@ def deck(held: bool) -> str:
         *((a, b, 0) for a, b in middle), *((a, b, 2) for a, b in middle),
         *((a, b, 1) for a, b in bottom),
     ]  # fmt: skip
-    for layer in range(z.size - 1):
-        elements.append(f"*ELEMENT, TYPE=C3D20R, ELSET=L{layer}")
+    for row in range(z.size - 1):
+        elements.append(f"*ELEMENT, TYPE=C3D20R, ELSET=L{row}")
         for e in range(ALONG):
-            nodes = [number(2 * e + a, b, 2 * layer + c) for a, b, c in shape]
+            nodes = [number(2 * e + a, b, 2 * row + c) for a, b, c in shape]
             used |= set(nodes)
-            listed = ", ".join(map(str, [1 + e + ALONG * layer, *nodes]))
+            listed = ", ".join(map(str, [1 + e + ALONG * row, *nodes]))
             first, rest = listed.split(", ")[:11], listed.split(", ")[11:]
             elements.append(", ".join(first) + ",\n" + ", ".join(rest))
     nodes_text = [
