@@ -246,7 +246,7 @@ def chart(rows: Sequence[Row], designs: int) -> Figure:
     chosen = [r for r in rows if str(r["model"]).startswith("choose")]
     axes.plot(
         [r["us_per_design"] for r in chosen], [float(r["tip_90"]) for r in chosen],
-        "k--", marker="s", ms=3.5, label=f"choose to {TOLERANCES[0]:g} ... {TOLERANCES[-1]:g} (90 %)",
+        "k--", marker="s", ms=3.5, label=f"choose, {TOLERANCES[0]:g} to {TOLERANCES[-1]:g} (90 %)",
     )  # fmt: skip
     axes.set(
         xscale="log", yscale="log", xlabel="processor time for one design [us]",

@@ -31,6 +31,7 @@ from pipeline.report.style import (
 _BAR_in = 0.32
 _MARGINS_in = 1.0
 _MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+_NOTHING_per_m = 1e-6  # what a thickness at its optimum leaves after rounding
 _FEW = 7  # as many colours and markers as there are
 
 Pictures = tuple[Path, Path]
@@ -181,7 +182,7 @@ def _draw_chance(axes: Axes, kilovolts: Sequence[float], percent: Sequence[float
 
 
 def _tell(axes: Axes, row: int, bar: Bar, middle: float, reach: float) -> None:
-    text = f"± {bar.u:.2g}" if bar.declared else "no uncertainty declared"
+    text = f"± {bar.u if bar.u > _NOTHING_per_m else 0:.2g}" if bar.declared else "no uncertainty declared"
     ends = [end for end in (bar.low, bar.high, middle) if math.isfinite(end)]
     style = "normal" if bar.declared else "italic"
     axes.text(max(ends) + 0.03 * reach, row, text, va="center", fontsize=7.5, fontstyle=style)
