@@ -182,7 +182,8 @@ def _draw_chance(axes: Axes, kilovolts: Sequence[float], percent: Sequence[float
 
 
 def _tell(axes: Axes, row: int, bar: Bar, middle: float, reach: float) -> None:
-    text = f"± {bar.u if bar.u > _NOTHING_per_m else 0:.2g}" if bar.declared else "no uncertainty declared"
+    u_per_m = bar.u if bar.u > _NOTHING_per_m else 0.0
+    text = f"± {u_per_m:.2g}" if bar.declared else "no uncertainty declared"
     ends = [end for end in (bar.low, bar.high, middle) if math.isfinite(end)]
     style = "normal" if bar.declared else "italic"
     axes.text(max(ends) + 0.03 * reach, row, text, va="center", fontsize=7.5, fontstyle=style)
