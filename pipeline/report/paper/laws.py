@@ -174,7 +174,7 @@ def _curve(database: Database, material: str) -> Entry:
             "Pa.s",
             now[at].standard_uncertainty or None,
             f"greatest relative difference of the curves from {low:.3g} h to {high:.3g} h: "
-            f"{100 * off[at]:+.1f} %, at {hours[at]:.2f} h; {how}{law.kind} law; "
+            f"{round(100 * off[at], 1) + 0.0:+.1f} %, at {hours[at]:.2f} h; {how}{law.kind} law; "
             f"{provenance(card, law)}",
             is_synthetic(card, law.campaign),
         )

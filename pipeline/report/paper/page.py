@@ -130,7 +130,7 @@ def cell(entry: Entry, corrected: Entry | None = None) -> Cell:
 def _difference(entry: Entry) -> tuple[str, str]:
     in_u, relative = entry.difference_in_u, entry.relative_difference
     if in_u is not None:
-        return "far" if abs(in_u) > _FAR_u else "good", f"{in_u:+.1f} u"
+        return "far" if abs(in_u) > _FAR_u else "good", f"{round(in_u, 1) + 0.0:+.1f} u"
     if relative is None:
         return "good", ""
     if entry.id in _UPPER_LIMITS:
