@@ -133,7 +133,7 @@ def row(name: str, cost_us: float, apart: Floats, bent: Floats) -> Row:
 def rungs(draws: Sequence[Draw]) -> list[Row]:
     """Measure every rung, and `choose` at several tolerances."""
     costs = costs_us(draws)
-    rows = []
+    rows: list[Row] = []
     for rung in NEGLECTS:
         answers = [evaluate(d.actuator, rung) for d in draws]
         rows.append({**_errors(rung, costs[rung], answers, draws), "within": ""})

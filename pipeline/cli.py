@@ -183,6 +183,7 @@ def paper(raw: Path | None, config: Path | None, processed: Path | None, as_json
         click.echo("SYNTHETIC  material values come from simulated files, not measurements")
 
 
+@cli.command()
 @click.argument("name", required=False)
 @click.option("--de", help="material of the film")
 @click.option("--passive", help="material of the passive layer")
