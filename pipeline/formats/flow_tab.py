@@ -70,4 +70,4 @@ def _read(file: RawFile) -> Recording:
     return replace(recording, flags=(*recording.flags, flag))
 
 
-FORMAT = Format(_READER.name, _READER.version, "tab-separated flow curve", _recognises, _read)
+FORMAT = Format(_READER.name, _READER.version, "tab-separated flow curve", _recognises, _read, "\t")

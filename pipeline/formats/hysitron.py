@@ -100,4 +100,4 @@ def _read(file: RawFile) -> Recording:
     return recording
 
 
-FORMAT = Format(_READER.name, _READER.version, "Hysitron TriboScan text", _recognises, _read)
+FORMAT = Format(_READER.name, _READER.version, "Hysitron TriboScan text", _recognises, _read, "\t")

@@ -98,4 +98,4 @@ def _read(file: RawFile) -> Recording:
     return read_sweep(file, sweep, metadata, _NAME, _VERSION)
 
 
-FORMAT = Format(_NAME, _VERSION, "GW Instek LCR-6000, PC-logged replies", _recognises, _read)
+FORMAT = Format(_NAME, _VERSION, "GW Instek LCR-6000, PC-logged replies", _recognises, _read, ",")

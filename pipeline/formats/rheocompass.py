@@ -140,4 +140,4 @@ def _notes(lines: list[str]) -> dict[str, str]:
     return kept
 
 
-FORMAT = Format(_NAME, _VERSION, "Anton Paar RheoCompass interval", _recognises, _read)
+FORMAT = Format(_NAME, _VERSION, "Anton Paar RheoCompass interval", _recognises, _read, "\t")

@@ -107,4 +107,4 @@ def _notes(lines: list[str]) -> dict[str, str]:
     return kept
 
 
-FORMAT = Format(_NAME, _VERSION, "flow curves side by side, % header", _recognises, _read)
+FORMAT = Format(_NAME, _VERSION, "flow curves side by side, % header", _recognises, _read, "\t")
