@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from pipeline.core.errors import MissingProperty
+from pipeline.core.present import readable_record
 from pipeline.core.quantity import Quantity
 from pipeline.core.records import Condition, Law, PropertyRecord, Refusal
 from pipeline.materials import document as doc
@@ -65,8 +66,20 @@ class MaterialCard:
         return any(r.key == key for r in self.records)
 
     def __getitem__(self, key: str) -> Quantity:
-        """Give the quantity of a key, as `record` without conditions does."""
-        return self.record(key).quantity
+        """Give the quantity of a key, as `record` without conditions does.
+
+        Raises
+        ------
+        MissingProperty : as `record` does, or all that is known is a lower bound: a bare number
+            would pass for an estimate
+        """
+        record = self.record(key)
+        if record.bound == "lower":
+            raise MissingProperty(
+                f"{key} of {self.material} is only known to be {readable_record(record)}; "
+                f"card.record({key!r}) tells the bound"
+            )
+        return record.quantity
 
     def record(self, key: str, **conditions: Condition | None) -> PropertyRecord:
         """Give the one record of a key under these conditions.

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -252,3 +253,14 @@ def test_an_entry_that_does_not_fit_is_named_by_its_place(
     document["release"] = str(caught.value).split()[6].rstrip(",")  # as a forger would
     with pytest.raises(CardError, match=message):
         MaterialCard.from_document(document)
+
+
+def test_a_lower_bound_is_never_given_as_a_bare_number() -> None:
+    known = samples.modulus(
+        key="handling_time", quantity=Quantity(43200.0, "s"), ci95=(43200.0, math.inf),
+        bound="lower",
+    )  # fmt: skip
+    card = MaterialCard(known.material, "Gel", False, (known,))
+    with pytest.raises(MissingProperty, match=r"handling_time of .* is only known to be >= 12 h"):
+        card["handling_time"]
+    assert card.record("handling_time").quantity.value == 43200.0
