@@ -11,7 +11,7 @@ from collections import Counter
 from pipeline.core.errors import ConfigError, RawFileError
 from pipeline.formats import FORMATS
 from pipeline.formats.format import Format
-from pipeline.formats.rawfile import RawFile
+from pipeline.formats.rawfile import Head, RawFile
 
 _DELIMITERS = {"tab": "\t", "semicolon": ";", "comma": ","}
 
@@ -23,8 +23,7 @@ def detect(file: RawFile) -> Format:
     ------
     RawFileError : none does, or several do; says what was found and which formats there are
     """
-    text = "".join(file.head)
-    matching = [form for form in FORMATS if form.delimiter in text and form.recognises(file.head)]
+    matching = file.head.once(_recognising)
     if len(matching) == 1:
         return matching[0]
     known = ", ".join(form.name for form in FORMATS)
@@ -41,6 +40,11 @@ def detect(file: RawFile) -> Format:
         value=file.head[0][:60],
         mend="name the format in the register's `format` column, or export in one of these forms",
     )
+
+
+def _recognising(head: Head) -> tuple[Format, ...]:
+    text = "".join(head)
+    return tuple(form for form in FORMATS if form.delimiter in text and form.recognises(head))
 
 
 def by_name(name: str) -> Format:

@@ -18,7 +18,8 @@ class Format:
     name : what registers and messages call it
     version : raise it when `read` may give other numbers
     title : instrument and form in words
-    recognises : does the file's head look like this format? Given `RawFile.head`
+    recognises : does the file's head look like this format? Given `RawFile.head`; of rows of plain
+        numbers it may look at what parts the numbers, not at the numbers
     read : the whole file to a Recording, or `RawFileError`
     delimiter : of its tables: where the head holds none, nobody needs to ask `recognises`
     """

@@ -34,10 +34,11 @@ from pipeline.core.records import FloatArray, Recording
 from pipeline.core.register import split_unit
 from pipeline.core.units import known, si_factor
 from pipeline.formats.cells import Dialect, looks_numeric
+from pipeline.formats.columns import Reader
 from pipeline.formats.format import Format
 from pipeline.formats.header import Layout, notes, split
 from pipeline.formats.rawfile import RawFile
-from pipeline.formats.table import Reader, read_table, required
+from pipeline.formats.table import read_table, required
 
 _NAME, _VERSION = "hv_ramp", 1
 _CHANNEL_LABEL = re.compile(r"ch(\d+)")
@@ -88,17 +89,12 @@ def _recognises(head: list[str]) -> bool:
 def _read(file: RawFile) -> Recording:
     layout = required(_layout(file.head), file, _NAME)
     delimiter = _delimiter(file.head[layout.names])
-    comma = delimiter != "," and _decimal_comma(file.head[layout.rows :])
-    reader = Reader(_NAME, _VERSION, Dialect(delimiter, "," if comma else "."))
+    decimal = "." if delimiter == "," else file.decimal_mark(layout.rows)
+    reader = Reader(_NAME, _VERSION, Dialect(delimiter, decimal))
     monitors = _monitors(file, layout)
     remarks = [line.lstrip("# ") for line in file.head[: layout.names]]
     table = read_table(file, layout, reader, notes(remarks))
     return replace(table, columns=_named(file, layout, monitors, table))
-
-
-def _decimal_comma(rows: Sequence[str]) -> bool:
-    text = "".join(rows)
-    return "," in text and "." not in text
 
 
 def _monitors(file: RawFile, layout: Layout) -> dict[str, _Monitor]:

@@ -102,7 +102,7 @@ def _read(file: RawFile) -> Recording:
         numeric = _with_row(file, first, numeric, [bare_unit(cell) for cell in below])
         first += 1
     columns = _columns(file, at, mode, numeric)
-    decimal = "," if delimiter != "," and _decimal_comma(head[first:]) else "."
+    decimal = "." if delimiter == "," else file.decimal_mark(first)
     sweep = Sweep(first, columns, Dialect(delimiter, decimal), _STATUSES if has_status else None)
     return read_sweep(file, sweep, {**_remarks(head[:at]), "mode": mode}, _NAME, _VERSION)
 
@@ -170,11 +170,6 @@ def _columns(
             )  # fmt: skip
         columns.append(Column(name, stem, used))
     return tuple(columns)
-
-
-def _decimal_comma(rows: Sequence[str]) -> bool:
-    text = "".join(rows)
-    return "," in text and "." not in text
 
 
 def _remarks(lines: Sequence[str]) -> dict[str, str]:

@@ -6,25 +6,45 @@ import codecs
 import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Concatenate, ParamSpec, TypeVar, cast
 
 from pipeline.core.errors import RawFileError
 
-HEAD_LINES = 64
+_MANY_LINES, _FEW_LINES = 64, 16  # enough for any header, and for nearly every one
+_ROWS_BELOW = 8  # rows of plain numbers that end a header
 _HEAD_BYTES = 16384
 ROW_STARTS = frozenset("0123456789+-.")
+_NUMBERS = b"0123456789+-eE"
+_ROW = f"{_NUMBERS.decode()}.,;\t "
 
 Answer = TypeVar("Answer")
 Details = ParamSpec("Details")
 
 
+@lru_cache(maxsize=256)
+def _answers(_header: tuple[str, ...], _separators: bytes) -> dict[object, object]:
+    return {}
+
+
 class Head(list[str]):
-    """The first lines of a file, without their line ends, and what was found out about them."""
+    """The first lines of a file, without their line ends, and what was found out about them.
+
+    Files of one exporter often differ in nothing but their numbers: heads with the same lines
+    above rows of the same separators share what was found out.
+
+    Parameters
+    ----------
+    lines : without their line ends
+    """
 
     def __init__(self, lines: list[str]) -> None:
         super().__init__(lines)
+        self.rows = _count_rows(lines)  # of plain numbers, at the end
         self._answers: dict[object, object] = {}
+        if self.rows >= _ROWS_BELOW:
+            rows = "\n".join(lines[-self.rows :]).encode().translate(None, _NUMBERS)
+            self._answers = _answers(tuple(lines[: -self.rows]), rows)
 
     @cached_property
     def texts(self) -> list[int]:
@@ -41,11 +61,23 @@ class Head(list[str]):
         *args: Details.args,
         **kwargs: Details.kwargs,
     ) -> Answer:
-        """Answer a question about these lines; detection and reading ask the same ones."""
+        """Answer a question about these lines; detection and reading ask the same ones.
+
+        The answer may rest on lines that are not rows of plain numbers, and on what parts the
+        numbers of those that are, but not on the numbers.
+        """
         key = (question, args, *kwargs.items())
         if key not in self._answers:
             self._answers[key] = question(self, *args, **kwargs)
         return cast(Answer, self._answers[key])
+
+
+def _count_rows(lines: list[str]) -> int:
+    """Count the rows of plain numbers at the end of some lines."""
+    for count, line in enumerate(reversed(lines)):
+        if line[:1] not in ROW_STARTS or line.strip(_ROW):
+            return count
+    return len(lines)
 
 
 @dataclass(frozen=True)
@@ -115,9 +147,25 @@ class RawFile:
 
     @cached_property
     def head(self) -> Head:
-        """The first 64 lines as text, without their line ends: enough for any header."""
-        lines = self.body[:_HEAD_BYTES].decode("utf-8", "replace").split("\n", HEAD_LINES)
-        return Head([line.rstrip("\r") for line in lines[:HEAD_LINES]])
+        """The lines down to the first rows of plain numbers, or the first 64, as text."""
+        text = self.body[:_HEAD_BYTES].decode("utf-8", "replace")
+        lines = text.split("\n", _FEW_LINES)[:_FEW_LINES]
+        few = Head([line.rstrip("\r") for line in lines])
+        if few.rows >= _ROWS_BELOW:
+            return few
+        lines = text.split("\n", _MANY_LINES)[:_MANY_LINES]
+        return Head([line.rstrip("\r") for line in lines])
+
+    def decimal_mark(self, line: int) -> str:
+        """Give the decimal mark of rows not separated by commas: point, unless a comma is first.
+
+        Parameters
+        ----------
+        line : of the first row, counted from 0
+        """
+        rows = self.offset(line)
+        comma, point = self.body.find(b",", rows), self.body.find(b".", rows)
+        return "," if comma >= 0 and not 0 <= point < comma else "."
 
     def offset(self, line: int) -> int:
         """Give the byte of `body` at which a line starts (counted from 0), at most its length."""

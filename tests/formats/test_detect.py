@@ -12,7 +12,7 @@ from pipeline import formats
 from pipeline.core.errors import ConfigError, RawFileError
 from pipeline.formats import FORMATS, detect
 from pipeline.formats.format import Format
-from pipeline.formats.rawfile import RawFile
+from pipeline.formats.rawfile import Head, RawFile
 from tests.formats.samples import BY_NAME, SAMPLES, Sample
 from tests.formats.test_good_files import every_sample
 
@@ -119,8 +119,38 @@ def test_the_list_holds_every_reader_there_is() -> None:
 
 def test_the_head_is_short_and_knows_no_line_ends() -> None:
     file = RawFile("x", b"a\r\nb\n" + b"1,2\r\n" * 5000)
-    assert len(file.head) == 64
-    assert file.head[:3] == ["a", "b", "1,2"]
+    assert file.head == ["a", "b", *["1,2"] * 14]
+
+
+def test_a_long_header_is_seen_to_its_64th_line() -> None:
+    lines = [f"label {i};{i}" for i in range(80)]
+    assert RawFile("x", "\n".join(lines).encode()).head == lines[:64]
+
+
+@every_sample
+def test_detection_looks_at_no_number(sample: Sample) -> None:
+    """Heads that differ in the numbers of their rows share answers, so these must not differ."""
+    file = RawFile(sample.file, sample.data)
+    first = len(file.head) - file.head.rows
+    digits = str.maketrans("0123456789", "7390518264")
+    rows = [line.translate(digits) for line in file.head[first:]]
+    other = Head([*file.head[:first], *rows])
+    for form in FORMATS:
+        assert form.recognises(other) == (form.name == sample.format)
+
+
+def test_heads_with_the_same_header_share_what_was_found_out() -> None:
+    asked = []
+
+    def question(head: Head) -> str:
+        asked.append(head[2])
+        return head[0]
+
+    rows = [f"{i}.5,-{i}e-3" for i in range(20)]
+    for header, lines in (("a", rows), ("a", rows[::-1]), ("b", rows), ("a", rows[:7])):
+        text = "\n".join([header, "s,mm", *lines, ""])
+        assert RawFile("x", text.encode()).head.once(question) == header
+    assert asked == ["0.5,-0e-3", "0.5,-0e-3", "0.5,-0e-3"]
 
 
 def test_offsets_find_the_line() -> None:
