@@ -25,11 +25,12 @@ from dataclasses import replace
 
 from pipeline.core.records import Flag, Recording
 from pipeline.formats.cells import Dialect, looks_numeric
+from pipeline.formats.columns import Reader
 from pipeline.formats.format import Format
 from pipeline.formats.header import Layout, split, split_label
 from pipeline.formats.quantities import meaning
 from pipeline.formats.rawfile import RawFile
-from pipeline.formats.table import Reader, read_table, required
+from pipeline.formats.table import read_table, required
 
 _READER = Reader(
     "flow_tab",

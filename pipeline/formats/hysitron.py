@@ -29,10 +29,11 @@ from __future__ import annotations
 from pipeline.core.errors import RawFileError
 from pipeline.core.records import Recording
 from pipeline.formats.cells import Dialect
+from pipeline.formats.columns import Reader
 from pipeline.formats.format import Format
 from pipeline.formats.header import Layout, split, split_label
 from pipeline.formats.rawfile import RawFile
-from pipeline.formats.table import Reader, read_table, required
+from pipeline.formats.table import read_table, required
 
 _READER = Reader("hysitron", 1, Dialect("\t", segmented=True))
 _POINTS = "Number of Points"

@@ -27,11 +27,12 @@ from __future__ import annotations
 
 from pipeline.core.records import Recording
 from pipeline.formats.cells import Dialect
+from pipeline.formats.columns import Reader
 from pipeline.formats.documentation import stated_units
 from pipeline.formats.format import Format
 from pipeline.formats.header import Layout, inline_layout, notes
 from pipeline.formats.rawfile import Head, RawFile
-from pipeline.formats.table import Reader, read_table, required
+from pipeline.formats.table import read_table, required
 
 _READER = Reader("phantom", 1, Dialect(","))
 

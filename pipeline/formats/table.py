@@ -3,37 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 
 import numpy as np
 
 from pipeline.core.errors import RawFileError
 from pipeline.core.records import Flag, FloatArray, Recording, Source
-from pipeline.core.units import UnknownUnit, si_factor
-from pipeline.formats.cells import Dialect, looks_numeric
-from pipeline.formats.documentation import contradictions
+from pipeline.formats.cells import looks_numeric
+from pipeline.formats.columns import Reader, columns_of
 from pipeline.formats.header import Layout
 from pipeline.formats.numbers import read_block, row_lines
-from pipeline.formats.quantities import STANDARD, assign, meaning
 from pipeline.formats.rawfile import RawFile
-
-
-@dataclass(frozen=True, slots=True)
-class Reader:
-    """What a format adds to the common reading of its tables.
-
-    Parameters
-    ----------
-    name, version : of the format
-    dialect : how it writes rows
-    unwritten : label in lower case to unit, for columns that the exporter documents but writes
-        without a unit; each use is kept in the metadata
-    """
-
-    name: str
-    version: int
-    dialect: Dialect
-    unwritten: Mapping[str, str] = field(default_factory=dict)
 
 
 def required(layout: Layout | None, file: RawFile, name: str) -> Layout:
@@ -68,21 +47,17 @@ def read_table(
         or rows that are not numbers for certain
     """
     _refuse_rows_above(file, layout, reader.dialect.delimiter)
-    _refuse_twins(file, layout, tuple(label.casefold() for label in layout.labels))
-    units, written, documented, flags = _units(file, layout, reader, header_units or {})
-    if documented:
-        metadata = {**metadata, "units not written in the file": ", ".join(documented)}
-    conversions = [_conversion(file, layout, column, unit) for column, unit in enumerate(units)]
-    si_units = tuple(si_unit for si_unit, _, _ in conversions)
-    names = assign(layout.labels, si_units)
-    _refuse_twins(file, layout, names)
+    told = columns_of(file.path, layout, reader, header_units or {})
+    if told.documented:
+        metadata = {**metadata, "units not written in the file": ", ".join(told.documented)}
     first = _first_row(file, layout)
-    rows = read_block(file, first, len(names), reader.dialect)
+    rows = read_block(file, first, len(told.names), reader.dialect)
     lines = row_lines(file, first, len(rows), reader.dialect)
-    flags += _kind_flags(layout, si_units) + row_flags(rows, names, lines)
     columns = {
         name: _to_si(rows[:, column], factor, offset)
-        for column, (name, (_, factor, offset)) in enumerate(zip(names, conversions, strict=True))
+        for column, (name, (factor, offset)) in enumerate(
+            zip(told.names, told.conversions, strict=True)
+        )
     }
     source = Source(
         path=file.path,
@@ -93,13 +68,16 @@ def read_table(
         reader=reader.name,
         reader_version=reader.version,
     )
-    return Recording(columns, metadata, written, source, tuple(flags))
+    flags = (*told.flags, *row_flags(rows, told.names, lines))
+    return Recording(columns, metadata, told.written, source, flags)
 
 
 def _first_row(file: RawFile, layout: Layout) -> int:
     """Skip blank lines between the labels and the rows."""
-    below = range(layout.rows, len(file.head))
-    return next((at for at in below if file.head[at].strip()), layout.rows)
+    for at in range(layout.rows, len(file.head)):
+        if file.head[at].strip():
+            return at
+    return layout.rows
 
 
 def _refuse_rows_above(file: RawFile, layout: Layout, delimiter: str) -> None:
@@ -113,19 +91,6 @@ def _refuse_rows_above(file: RawFile, layout: Layout, delimiter: str) -> None:
                 value=line,
                 mend="one file holds one run: export each run to a file of its own",
             )
-
-
-def _refuse_twins(file: RawFile, layout: Layout, names: tuple[str, ...]) -> None:
-    if len(set(names)) < len(names):
-        twin = next(column for column, name in enumerate(names) if name in names[:column])
-        raise RawFileError(
-            file.path,
-            "two columns have the same label",
-            line=layout.names + 1,
-            column=twin + 1,
-            value=layout.labels[twin],
-            mend="export each quantity once",
-        )
 
 
 def row_flags(rows: FloatArray, names: tuple[str, ...], lines: Sequence[int]) -> list[Flag]:
@@ -171,69 +136,9 @@ def _steps_back(time: FloatArray, lines: Sequence[int]) -> list[Flag]:
     return [Flag("time-not-increasing", detail)]
 
 
-def _units(
-    file: RawFile, layout: Layout, reader: Reader, header_units: Mapping[str, str]
-) -> tuple[list[str], dict[str, str], list[str], list[Flag]]:
-    """Give every column's unit, what the file writes of it, what it leaves out, what is odd."""
-    stated = {label.casefold(): unit for label, unit in header_units.items()}
-    flags = list(
-        contradictions(stated, dict(zip(layout.labels, layout.units, strict=True)), "header")
-    )
-    units: list[str] = []
-    written: dict[str, str] = {}
-    documented = []
-    for column, (label, unit) in enumerate(zip(layout.labels, layout.units, strict=True)):
-        key = label.casefold()
-        used = written[label] = unit or stated.get(key) or ""
-        if not used and key in reader.unwritten:
-            used = reader.unwritten[key]
-            documented.append(f"{label} [{used}]")
-        if not used:
-            raise RawFileError(
-                file.path,
-                "a column without a unit, neither over the column nor in the header",
-                line=layout.units_line + 1,
-                column=column + 1,
-                value=label,
-                mend="export the column with its unit, or leave it out",
-            )
-        units.append(used)
-    return units, written, documented, flags
-
-
-def _conversion(file: RawFile, layout: Layout, column: int, unit: str) -> tuple[str, float, float]:
-    try:
-        return si_factor(unit)
-    except UnknownUnit as error:
-        raise RawFileError(
-            file.path,
-            f"{layout.labels[column]!r}: {error}",
-            line=layout.units_line + 1,
-            column=column + 1,
-            value=unit,
-            mend="export the column in a known unit, or leave it out",
-        ) from error
-
-
 def _to_si(values: FloatArray, factor: float, offset: float) -> FloatArray:
     """Convert a column of the table as an array of its own: `SI = factor * written + offset`."""
     if factor == 1.0 and offset == 0.0:
         return values.copy()
     scaled = values * factor
     return scaled + offset if offset else scaled
-
-
-def _kind_flags(layout: Layout, si_units: tuple[str, ...]) -> list[Flag]:
-    """Notice a column whose unit is not one of what its label means."""
-    flags = []
-    for label, si_unit in zip(layout.labels, si_units, strict=True):
-        found = meaning(label)
-        if found is not None and STANDARD[found[1]][0] != si_unit:
-            flags.append(
-                Flag(
-                    "unit-of-another-kind",
-                    f"{label} is in {si_unit}, which is not a unit of {found[1]}; it was not "
-                    "taken for it",
-                )
-            )
-    return flags

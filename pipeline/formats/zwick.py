@@ -31,10 +31,11 @@ import numpy as np
 
 from pipeline.core.records import Flag, Recording
 from pipeline.formats.cells import Dialect
+from pipeline.formats.columns import Reader
 from pipeline.formats.format import Format
 from pipeline.formats.header import Layout, notes, two_row_layout
 from pipeline.formats.rawfile import Head, RawFile
-from pipeline.formats.table import Reader, read_table, required
+from pipeline.formats.table import read_table, required
 
 _READER = Reader("zwick", 1, Dialect(","))
 

@@ -1,0 +1,153 @@
+"""What the columns of a table are: their names and the way to SI, by what is written over them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+from pipeline.core.errors import RawFileError
+from pipeline.core.records import Flag
+from pipeline.core.units import UnknownUnit, si_factor
+from pipeline.formats.cells import Dialect
+from pipeline.formats.documentation import contradictions
+from pipeline.formats.header import Layout
+from pipeline.formats.quantities import STANDARD, assign, meaning
+
+
+@dataclass(frozen=True, slots=True)
+class Reader:
+    """What a format adds to the common reading of its tables.
+
+    Parameters
+    ----------
+    name, version : of the format
+    dialect : how it writes rows
+    unwritten : label in lower case to unit, for columns that the exporter documents but writes
+        without a unit; each use is kept in the metadata
+    """
+
+    name: str
+    version: int
+    dialect: Dialect
+    unwritten: Mapping[str, str] = field(default_factory=dict, hash=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Columns:
+    """The columns of a table, in order.
+
+    Parameters
+    ----------
+    names : with their SI units
+    conversions : factor and offset to SI, `SI = factor * written + offset`
+    written : label to unit as it stands in the file, empty where it does not
+    documented : `label [unit]` of those whose unit does not stand in the file
+    flags : units that contradict each other or are not of what the label means
+    """
+
+    names: tuple[str, ...]
+    conversions: tuple[tuple[float, float], ...]
+    written: Mapping[str, str]
+    documented: tuple[str, ...]
+    flags: tuple[Flag, ...]
+
+
+def columns_of(
+    path: str, layout: Layout, reader: Reader, header_units: Mapping[str, str]
+) -> Columns:
+    """Find out what the columns below a layout are.
+
+    Parameters
+    ----------
+    path : of the file, for messages
+    header_units : label to the unit that the header states for it
+
+    Raises
+    ------
+    RawFileError : a column without a unit, with an unknown one, or with an already used label
+    """
+    try:
+        return _columns(layout, reader, tuple(header_units.items()))
+    except RawFileError as error:
+        raise RawFileError(path, *error.args[1:]) from error
+
+
+@lru_cache(maxsize=256)  # the files of a campaign have the same labels
+def _columns(layout: Layout, reader: Reader, header_units: tuple[tuple[str, str], ...]) -> Columns:
+    _refuse_twins(layout, tuple(label.casefold() for label in layout.labels))
+    stated = {label.casefold(): unit for label, unit in header_units}
+    over = dict(zip(layout.labels, layout.units, strict=True))
+    written = {label: unit or stated.get(label.casefold(), "") for label, unit in over.items()}
+    units = [_unit(layout, reader, column, unit) for column, unit in enumerate(written.values())]
+    found = [_conversion(layout, column, unit) for column, unit in enumerate(units)]
+    si_units = tuple(si_unit for si_unit, _, _ in found)
+    names = assign(layout.labels, si_units)
+    _refuse_twins(layout, names)
+    documented = tuple(
+        f"{label} [{unit}]"
+        for (label, said), unit in zip(written.items(), units, strict=True)
+        if not said
+    )
+    conversions = tuple((factor, offset) for _, factor, offset in found)
+    flags = contradictions(stated, over, "header") + _kind_flags(layout, si_units)
+    return Columns(names, conversions, written, documented, flags)
+
+
+def _refuse_twins(layout: Layout, names: tuple[str, ...]) -> None:
+    if len(set(names)) < len(names):
+        twin = next(column for column, name in enumerate(names) if name in names[:column])
+        raise RawFileError(
+            "",
+            "two columns have the same label",
+            line=layout.names + 1,
+            column=twin + 1,
+            value=layout.labels[twin],
+            mend="export each quantity once",
+        )
+
+
+def _unit(layout: Layout, reader: Reader, column: int, written: str) -> str:
+    label = layout.labels[column]
+    if written:
+        return written
+    if label.casefold() in reader.unwritten:
+        return reader.unwritten[label.casefold()]
+    raise RawFileError(
+        "",
+        "a column without a unit, neither over the column nor in the header",
+        line=layout.units_line + 1,
+        column=column + 1,
+        value=label,
+        mend="export the column with its unit, or leave it out",
+    )
+
+
+def _conversion(layout: Layout, column: int, unit: str) -> tuple[str, float, float]:
+    try:
+        return si_factor(unit)
+    except UnknownUnit as error:
+        raise RawFileError(
+            "",
+            f"{layout.labels[column]!r}: {error}",
+            line=layout.units_line + 1,
+            column=column + 1,
+            value=unit,
+            mend="export the column in a known unit, or leave it out",
+        ) from error
+
+
+def _kind_flags(layout: Layout, si_units: tuple[str, ...]) -> tuple[Flag, ...]:
+    """Notice a column whose unit is not one of what its label means."""
+    flags = []
+    for label, si_unit in zip(layout.labels, si_units, strict=True):
+        found = meaning(label)
+        if found is not None and STANDARD[found[1]][0] != si_unit:
+            flags.append(
+                Flag(
+                    "unit-of-another-kind",
+                    f"{label} is in {si_unit}, which is not a unit of {found[1]}; it was not "
+                    "taken for it",
+                )
+            )
+    return tuple(flags)
