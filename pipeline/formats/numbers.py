@@ -14,7 +14,6 @@ from functools import cache
 
 import numpy as np
 import simdjson
-from numpy.typing import NDArray
 
 from pipeline.core.errors import RawFileError
 from pipeline.core.records import FloatArray
@@ -29,7 +28,6 @@ _CHUNK = 1 << 20  # bytes parsed at a time: the parser's workspace is some ten t
 # parse while something that it parsed is still referred to.
 _PARSER = simdjson.Parser()
 _RETURN, _LINE = b"\r\n"
-_LINE_TO_COMMA = np.uint8(_LINE ^ ord(","))  # by exclusive or, the cheapest way over many bytes
 
 
 def read_block(file: RawFile, first: int, columns: int, dialect: Dialect) -> FloatArray:
@@ -103,41 +101,54 @@ def parse(block: bytes, columns: int, dialect: Dialect) -> FloatArray | None:
 def _parse(block: bytes, columns: int, dialect: Dialect) -> FloatArray | None:
     delimiter, decimal = dialect.delimiter.encode(), dialect.decimal.encode()
     line_end = b"\r\n" if b"\r" in block else b"\n"
-    one_row = delimiter * (columns - 1) + line_end
-    separators = block.translate(None, _DIGITS + decimal) + line_end
-    rows = len(separators) // len(one_row)
-    if separators != one_row * rows:
-        return None
-    characters = np.frombuffer(block, dtype=np.uint8)
-    line_feeds = characters == _LINE
-    if line_end != b"\n" and not _only_before(characters == _RETURN, line_feeds):
-        return None
-    # A carriage return may stay: it is white space to JSON.
-    if delimiter == b",":
-        listed = (characters ^ line_feeds.view(np.uint8) * _LINE_TO_COMMA).tobytes()
-    else:
-        listed = block.translate(_to_commas(decimal + delimiter))
-    text = b"".join((b"[", listed, b"]"))
-    if b"+" in text and not (b"+-" in text or b"+ " in text):  # JSON knows no leading plus
-        text = text.replace(b",+", b",").replace(b"[+", b"[")
-    values = _json_numbers(text)
-    if values is None or values.size != rows * columns:
+    marks = block.translate(None, _DIGITS) + line_end  # decimal marks and separators
+    row_of_fractions = delimiter.join([decimal] * columns) + line_end
+    rows = len(marks) // len(row_of_fractions)
+    fractions = marks == row_of_fractions * rows  # one decimal mark in every field
+    if not fractions:
+        one_row = delimiter * (columns - 1) + line_end
+        separators = marks.translate(None, decimal)
+        rows = len(separators) // len(one_row)
+        if separators != one_row * rows:
+            return None
+    text = _json_list(block, line_end, delimiter, decimal)
+    values = None if text is None else _json_numbers(text)
+    if text is None or values is None or values.size != rows * columns:
         return None  # one empty field leaves no number and no separator
     if np.maximum.reduce(values) >= OVER_RANGE or np.minimum.reduce(values) <= -OVER_RANGE:
         return None
-    if b"-" in text and not values.all() and _has_integer_minus_zero(text, values.size):
+    if not fractions and not values.all() and _has_integer_minus_zero(text):
         return None
     return values.reshape(rows, columns)
 
 
+def _json_list(block: bytes, line_end: bytes, delimiter: bytes, decimal: bytes) -> bytes | None:
+    """Write rows as one JSON list, or None where a line does not end as the others do."""
+    if line_end == b"\r\n" and b" " in block and not _together(block):
+        return None
+    # The return of a line end becomes the comma. Its line feed stays, white space to JSON, so that
+    # digits between the two would be a field too many or two numbers with no comma between them.
+    end = line_end[:1]
+    if delimiter == b",":
+        characters = np.frombuffer(block, dtype=np.uint8)
+        comma = (characters == ord(end)).view(np.uint8) * np.uint8(ord(end) ^ ord(","))
+        text = b"".join((b"[", (characters ^ comma).data, b"]"))  # fewer passes than `replace`
+    else:
+        text = b"".join((b"[", block.translate(_to_commas(decimal + delimiter + end)), b"]"))
+    if b"+" in text and not (b"+-" in text or b"+ " in text):  # JSON knows no leading plus
+        return re.sub(rb"([\[,]\n?)\+", rb"\1", text)
+    return text
+
+
 @cache
-def _to_commas(decimal_and_delimiter: bytes) -> bytes:
-    return bytes.maketrans(decimal_and_delimiter + b"\n", b".,,")
+def _to_commas(marks: bytes) -> bytes:
+    return bytes.maketrans(marks, b".,,")
 
 
-def _only_before(returns: NDArray[np.bool_], line_feeds: NDArray[np.bool_]) -> bool:
+def _together(block: bytes) -> bool:
     """Say whether carriage return and line feed only stand together, in this order."""
-    return bool((returns[:-1] == line_feeds[1:]).all()) and not returns[-1]
+    characters = np.frombuffer(block, dtype=np.uint8)
+    return bool(((characters[:-1] == _RETURN) == (characters[1:] == _LINE)).all())
 
 
 def _json_numbers(text: bytes) -> FloatArray | None:
@@ -150,11 +161,6 @@ def _json_numbers(text: bytes) -> FloatArray | None:
     return np.frombuffer(parsed.as_buffer(of_type="d"))  # a copy: nothing refers to `parsed` now
 
 
-def _has_integer_minus_zero(text: bytes, numbers: int) -> bool:
+def _has_integer_minus_zero(text: bytes) -> bool:
     """Look for a field `-0`, which JSON reads as an integer, without its sign."""
-    characters = np.frombuffer(text, dtype=np.uint8)
-    if np.count_nonzero(characters == ord(".")) == numbers:
-        return False  # every number has its point, so none is an integer
-    minus = np.flatnonzero(characters == ord("-"))
-    behind = characters[minus[characters[minus + 1] == ord("0")] + 2]
-    return any((behind == end).any() for end in b",] \r")
+    return any(b"-0" + end in text for end in (b",", b"]", b" ", b"\r"))
