@@ -136,9 +136,11 @@ def outlying(x: FloatArray, y: FloatArray, line: Line) -> IndexArray:
     indices, shape (k,)
     """
     off = np.abs(y - line.intercept - line.slope * x)
-    return np.flatnonzero(
-        off > _FAR * 1.4826 * max(float(np.median(off)), _ROUNDING * line.residual_sd)
-    )
+    middle = off.size // 2
+    low = middle - 1 + off.size % 2  # of an odd number of residuals, the same one twice
+    parted = np.partition(off, (low, middle))  # np.median takes four times as long
+    majority = 0.5 * float(parted[low] + parted[middle])
+    return np.flatnonzero(off > _FAR * 1.4826 * max(majority, _ROUNDING * line.residual_sd))
 
 
 def curvature(x: FloatArray, y: FloatArray) -> float:
