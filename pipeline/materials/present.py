@@ -163,7 +163,8 @@ def _row(
 
 def _law_line(law: Law, flags: Sequence[str]) -> str:
     head = f"{law.key} ({property_key(law.key).symbol}): {law_text(law)}"
-    return f"{head}; {readable_conditions(law.conditions)} {_marks(law, flags)}".rstrip()
+    under = f"; {readable_conditions(law.conditions)}" if law.conditions else ""
+    return f"{head}{under} {_marks(law, flags)}".rstrip()
 
 
 def _marks(entry: PropertyRecord | Law, flags: Sequence[str]) -> str:
