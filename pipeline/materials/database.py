@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 DATABASE_FILE = "materials.sqlite"
 CURVES_FILE = "curves.h5"
 
+_SHOWN = 8  # materials that a message names
 _OWNED = (
     "SELECT * FROM {} WHERE id IN (SELECT id FROM properties WHERE material = ?1 "
     "UNION ALL SELECT id FROM laws WHERE material = ?1) ORDER BY id, position"
@@ -186,8 +187,12 @@ class Database(Mapping[str, MaterialCard]):
         )
 
     def _missing(self, material: str) -> str:
-        near = difflib.get_close_matches(material, self, n=3)
-        hint = f"nearest: {', '.join(near)}" if near else f"it holds {len(self)} others"
+        held = list(self)
+        near = difflib.get_close_matches(material, held, n=3)
+        more = f" and {len(held) - _SHOWN} more" if len(held) > _SHOWN else ""
+        hint = (
+            f"nearest: {', '.join(near)}" if near else f"it holds {', '.join(held[:_SHOWN])}{more}"
+        )
         return f"{self.path} has no material {material!r}; {hint}"
 
     def files(self) -> tuple[FileEntry, ...]:
