@@ -173,7 +173,9 @@ def test_an_unknown_material_names_the_nearest(path: Path) -> None:
         with pytest.raises(MissingMaterial) as caught:
             db["gel-aa"]
         assert str(caught.value) == f"{path} has no material 'gel-aa'; nearest: gel-a, gel-b"
-        with pytest.raises(MissingMaterial, match="has no material 'steel'; it holds gel-a, gel-b$"):
+        with pytest.raises(
+            MissingMaterial, match=r"has no material 'steel'; it holds gel-a, gel-b$"
+        ):
             db["steel"]
 
 
