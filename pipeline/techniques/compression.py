@@ -57,7 +57,7 @@ from pipeline.techniques._stress_strain_figure import draw_curves
 
 MODULUS = "compressive_modulus"
 COMPENSATED = "compressive_modulus_toe_compensated"
-VERSION = 1
+VERSION = 2
 
 
 class CompressionConfig(CurveConfig):
@@ -189,8 +189,12 @@ def _compensated(loading: _Loading, bins: Bins, config: CompressionConfig) -> Me
     )
     x, y = loading.strain[inside], loading.stress_Pa[inside]
     line = rising_line(x, y, config.min_samples)
-    # the tangent may lie anywhere in its bin; where the curve bends, the slope goes with it
-    u_zero = abs(curvature(x, y)) * config.toe_bin / math.sqrt(12.0)
+    # where the curve bends, the slope goes with the zero of strain
+    bend = abs(curvature(x, y))
+    # the tangent may lie anywhere in its bin
+    u_zero = bend * config.toe_bin / math.sqrt(12.0)
+    # the first load may rest on the specimen, or be that of a cell which nobody zeroed
+    u_preload = bend * abs(float(loading.stress_Pa[0])) / line.slope / math.sqrt(3.0)
     return modulus(
         COMPENSATED,
         line,
@@ -202,7 +206,10 @@ def _compensated(loading: _Loading, bins: Bins, config: CompressionConfig) -> Me
         conditions=loading.conditions,
         flags=loading.flags,
         diagnostics={"zero_strain": zero},
-        further=(Contribution("zero of the toe's tangent", u_zero, shared=False),),
+        further=(
+            Contribution("zero of the toe's tangent", u_zero, shared=False),
+            Contribution("load before the test: on the specimen or not", u_preload, shared=True),
+        ),
     )
 
 

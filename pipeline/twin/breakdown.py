@@ -171,6 +171,7 @@ def breakdown_truth() -> tuple[TrueValue, ...]:
             TrueValue(key, material, REFERENCE_AGE, value, unit)
             for key, value, unit in (
                 ("weibull_shape", shape, "1"),
+                ("weibull_shape_unbiased", shape, "1"),  # another estimate of the same shape
                 ("breakdown_B10", quantile(scale, shape, 0.1), "V/m"),
                 ("breakdown_B1", quantile(scale, shape, 0.01), "V/m"),
             )

@@ -10,10 +10,13 @@ import numpy as np
 
 from pipeline.core.errors import OutOfRange
 from pipeline.core.records import FloatArray
+from pipeline.estimators.curve import bin_slopes, zero_of_tangent
 
 COMPRESSION_WINDOW = 0.05
 TENSION_WINDOW = 0.01
 LINEAR_TO = 0.05
+TANGENT_BIN = 0.01
+_DENSE = 5001
 _END_SLOPE = 2.4  # at break, in mean slopes: an elastomer stiffens before it breaks
 
 
@@ -37,6 +40,21 @@ def window_slope(stress: Callable[[FloatArray], FloatArray], window: float) -> f
     nodes, weights = _legendre()
     strain = 0.5 * window * (nodes + 1.0)
     return float(3.0 / window * np.sum(weights * nodes * stress(strain)))
+
+
+def compensated_slope(stress: Callable[[FloatArray], FloatArray]) -> float:
+    """Least-squares slope over 5 % strain, counted from the zero of the steepest 1 % tangent.
+
+    Parameters
+    ----------
+    stress : strain to stress, shape (n,) to (n,); zero at a strain of zero
+
+    Source: ASTM D638, annex A1.
+    """
+    strain = np.linspace(0.0, COMPRESSION_WINDOW, _DENSE)
+    bins = bin_slopes(strain, stress(strain), 0.0, COMPRESSION_WINDOW, TANGENT_BIN)
+    zero = zero_of_tangent(bins)
+    return window_slope(lambda e: stress(e + zero), COMPRESSION_WINDOW)
 
 
 def compressive_stress(strain: FloatArray, modulus_Pa: float, toe: float) -> FloatArray:

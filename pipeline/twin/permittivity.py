@@ -22,7 +22,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from datetime import date
 
 import numpy as np
@@ -45,13 +45,14 @@ from pipeline.twin.draws import (
     stream,
 )
 from pipeline.twin.part import SYNTHETIC, Part
-from pipeline.twin.truth import materials, true_value, truth_table
+from pipeline.twin.truth import TrueValue, materials, true_value, truth_table
 from pipeline.twin.writers import lcr6000_log, lcr_csv, register_csv
 
 TECHNIQUE = "permittivity"
 SPECIMENS = 5
 CURED_ON, TESTED_ON = date(2022, 1, 10), date(2022, 1, 20)
 FACTOR_SD = {"relative_permittivity": 0.015}
+LOSS = "loss_tangent"
 # As `config/instruments.toml` declares it for the checked meter, and as the room's default.
 METER = LcrAccuracy(
     high_impedance_per_ohm=((150e3, 0.03e-9),),
@@ -176,7 +177,7 @@ def simulate_permittivity(
         capacitance_F=_as_the_meter_sees(true_F, errors, rng),
         truth={
             **own,
-            "loss_tangent": float(loss_tangent(at_card)[0]),
+            LOSS: float(loss_tangent(at_card)[0]),
             "thickness_m": thickness_m,
             "squeeze": 1.0 - stretch,
             "series_ohm": series_ohm,
@@ -233,8 +234,15 @@ def permittivity_part(seed: int) -> Part:
             rows.append(row)
             specimens[sweep.specimen] = sweep.truth
     contents[f"{TECHNIQUE}/specimens.csv"] = register_csv(rows)
-    truth = tuple(entry for entry in truth_table() if entry.key in FACTOR_SD)
-    return Part(TECHNIQUE, contents, truth, draw_lcr_calibration(seed), specimens)
+    calibration = draw_lcr_calibration(seed)
+    return Part(TECHNIQUE, contents, permittivity_truth(), calibration, specimens)
+
+
+def permittivity_truth() -> tuple[TrueValue, ...]:
+    """List permittivity and loss of every material at the card's frequency; all lose alike."""
+    stored = tuple(entry for entry in truth_table() if entry.key in FACTOR_SD)
+    lost = float(loss_tangent(complex_permittivity(1.0, np.array([_CARD_HZ])))[0])
+    return stored + tuple(replace(entry, key=LOSS, value=lost) for entry in stored)
 
 
 def _file(sweep: SimulatedSweep) -> bytes:

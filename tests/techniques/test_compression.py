@@ -72,6 +72,19 @@ def test_a_toe_is_flagged_and_compensated_under_its_own_name() -> None:
     assert "zero of the toe's tangent" in {c.source for c in compensated.budget}
 
 
+def test_a_load_that_nobody_zeroed_stands_in_the_compensated_budget_alone() -> None:
+    toe = 1e5 * (STRAIN - 0.004 * -np.expm1(-STRAIN / 0.004)) * (1.0 + STRAIN)
+    zeroed, not_zeroed = compress(toe), compress(toe + 200.0)
+    source = "load before the test: on the specimen or not"
+    (line,) = [c for c in not_zeroed.values[1].budget if c.source == source]
+    assert line.shared
+    moved = zeroed.values[1].quantity.value - not_zeroed.values[1].quantity.value
+    assert moved > 100.0  # Pa: the tangent's zero lies at a lesser strain, where the curve bends
+    assert math.sqrt(3.0) * line.u == pytest.approx(moved, rel=0.3)
+    assert source not in {c.source for c in not_zeroed.values[0].budget}
+    assert not_zeroed.values[0].quantity.value == pytest.approx(zeroed.values[0].quantity.value)
+
+
 def test_a_gap_is_a_missing_contact() -> None:
     plain, compensated = compress(np.maximum(1e5 * (STRAIN - 0.0125), 0.0)).values
     assert plain.flags[0].name == "contact"
