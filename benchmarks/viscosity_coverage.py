@@ -12,7 +12,8 @@ from concurrent.futures import ProcessPoolExecutor
 
 import numpy as np
 
-from pipeline.core.records import FloatArray, Law, PropertyRecord, Recording, Source, Specimen
+from benchmarks.coverage_truth import truth_of, viscosity_at
+from pipeline.core.records import Law, Recording, Source, Specimen
 from pipeline.core.technique import Context
 from pipeline.techniques import viscosity
 from pipeline.techniques.viscosity.config import ViscosityConfig
@@ -53,7 +54,7 @@ def one(task: tuple[int, str]) -> Counter[tuple[str, str, bool]]:
     for record in summary.records:
         low, high = record.ci95
         name = f"{record.key} at {float(str(record.conditions['time_s'])) / 3600:g} h"
-        counts[material, name, low <= true_of(truth, record) <= high] += 1
+        counts[material, name, low <= truth_of(record, {}) <= high] += 1
     for law in summary.laws:
         if law.key == "viscosity":
             for inside in law_hits(truth, law):
@@ -62,34 +63,13 @@ def one(task: tuple[int, str]) -> Counter[tuple[str, str, bool]]:
     return counts
 
 
-def true_of(truth: TrueViscosity, record: PropertyRecord) -> float:
-    """What a record would be without any error."""
-    time_s = float(str(record.conditions["time_s"]))
-    hours = time_s / 3600.0
-    rate = np.array([float(str(record.conditions.get("rate_per_s", 1.0)))])
-    if record.key == "viscosity":
-        return float(truth(np.array([time_s]), rate)[0])
-    if record.key == "viscosity_doubling_time":
-        times = np.linspace(time_s, 13 * 3600.0, 200_000)
-        values: FloatArray = truth(times, rate)
-        return float(times[np.argmax(values >= 2.0 * values[0])])
-    k = float(np.polynomial.polynomial.polyval(hours, truth.consistency))
-    n = float(np.polynomial.polynomial.polyval(hours, truth.index))
-    flow: dict[str, float] = {
-        "flow_consistency": k,
-        "flow_index": n,
-        "flow_consistency_wide_cup": k * n**n,
-    }
-    return flow[record.key]
-
-
 def law_hits(truth: TrueViscosity, law: Law) -> list[bool]:
     """Whether the 95 % interval of a law holds the truth, along its range."""
     hits = []
     for rate in law.rates or (None,):
         for time_s in np.linspace(*law.valid, _CHECKED_PER_LAW).tolist():
             low, high = law.ci95(time_s, rate)
-            true = float(truth(np.array([time_s]), np.array([rate or 1.0]))[0])
+            true = viscosity_at(truth, time_s, rate or 1.0)
             hits.append(low <= true <= high)
     return hits
 
