@@ -220,6 +220,11 @@ def _specimen(
         # a time counts from an event, so zero is one; a length of zero is a slip
         if name in required and (value < 0 or (value == 0 and column.unit != "s")):
             raise RawFileError(path, "must be positive", line, column.index + 1, cell)
+        if column.unit == "K" and value < 0:
+            raise RawFileError(
+                path, "a temperature below absolute zero", line, column.index + 1, cell,
+                "leave the cell empty where it was not recorded",
+            )  # fmt: skip
         numbers[name] = _with_uncertainty(name, value, column, columns, cells, path, line, gauges)
     numeric = {c.header for c in columns.values()}
     taken = numeric | {"specimen", "material", "file", "format", *_CONDITIONS}

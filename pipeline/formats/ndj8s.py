@@ -9,7 +9,8 @@ Format
 Remarks start with `#`. Then one line per reading: stamp, TAB, `rotor#rpm RPM`, viscosity in mPa.s,
 torque in percent, temperature in degrees Celsius. Stamps are ISO 8601 with or without an offset, or
 the time of day alone, which goes on past midnight. `EEEE` in place of the viscosity is over-range,
-`----` below zero: such readings are left out and their lines named. `-.-` means no probe.
+`----` below zero: such readings are left out and their lines named. `-.-` means no probe, and so
+does a temperature below absolute zero (-327.67).
 
 Uncertainties
 -------------
@@ -31,12 +32,12 @@ from pipeline.formats.format import Format
 from pipeline.formats.rawfile import RawFile
 from pipeline.formats.viscometer import (
     BELOW_ZERO,
-    NO_PROBE,
     OVER_RANGE,
     Reading,
     clock_column,
     number,
     recording,
+    temperature_K,
 )
 
 _NAME, _VERSION = "ndj8s", 1
@@ -96,8 +97,8 @@ def _reading(file: RawFile, at: int, line: str) -> Reading:
         )  # fmt: skip
     numbers["viscosity_Pas"] = to_si(number(file, at, 3, fields[0], "viscosity"), "mPa.s")
     numbers["torque"] = to_si(number(file, at, 4, fields[1], "torque"), "percent")
-    if len(fields) == 3 and not NO_PROBE.fullmatch(fields[2]):
-        numbers["temperature_K"] = to_si(number(file, at, 5, fields[2], "temperature"), "C")
+    if len(fields) == 3 and (kelvin := temperature_K(file, at, 5, fields[2])) is not None:
+        numbers["temperature_K"] = kelvin
     return Reading(at, stamp.strip(), numbers)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from pipeline.core.errors import RawFileError
 from pipeline.core.records import Flag, FloatArray, Recording, Source
+from pipeline.core.units import to_si
 from pipeline.formats.rawfile import RawFile
 
 DAY_S = 86400.0
@@ -131,6 +132,21 @@ def number(file: RawFile, line: int, column: int, text: str, what: str) -> float
     return value
 
 
+def temperature_K(file: RawFile, line: int, column: int, text: str) -> float | None:
+    """Read a temperature in degrees Celsius `[K]`; None without a probe.
+
+    An open probe also shows as a number below absolute zero, such as -327.67.
+
+    Raises
+    ------
+    RawFileError : neither a number nor a sign that there is no probe
+    """
+    if NO_PROBE.fullmatch(text):
+        return None
+    kelvin = to_si(number(file, line, column, text, "temperature"), "C")
+    return kelvin if kelvin > 0.0 else None
+
+
 def clock_column(file: RawFile, stamps: Sequence[tuple[int, str]]) -> tuple[str, FloatArray]:
     """Turn stamps into seconds that rise.
 
@@ -145,7 +161,8 @@ def clock_column(file: RawFile, stamps: Sequence[tuple[int, str]]) -> tuple[str,
 
     Raises
     ------
-    RawFileError : a text that is no stamp, stamps of several kinds, or a clock that steps back
+    RawFileError : a text that is no stamp, stamps of several kinds, one stamp repeated in every
+        line, or a clock that steps back
     """
     kinds: dict[str, Callable[[str], float | None]] = {
         "time_of_day_s": _of_day,
@@ -155,6 +172,12 @@ def clock_column(file: RawFile, stamps: Sequence[tuple[int, str]]) -> tuple[str,
     if not stamps:
         return "local_clock_s", np.zeros(0)
     line, first = stamps[0]
+    if len(stamps) > 1 and all(text == first for _, text in stamps):
+        raise RawFileError(
+            file.path, f"all {len(stamps)} readings bear one stamp: it tells when the log began, "
+            "not when each was taken", line, 1, first,
+            "stamp every reading, or log the elapsed time as time_s",
+        )  # fmt: skip
     kind = next((k for k, read in kinds.items() if read(first) is not None), None)
     if kind is None:
         raise _no_stamp(file, line, first)

@@ -11,7 +11,8 @@ Remarks start with `#`. Labels: one of `time_s`, `time_min`, `time_h`, `elapsed_
 `elapsed_h` (elapsed time since mixing) or `timestamp` (stamps as in `ndj8s`); one of
 `viscosity_mPas`, `viscosity_Pas`; and, as far as there are any, `rotor`, `speed_rpm`,
 `torque_percent`, `temperature_C`. Decimal points. `EEEE` and `----` in the viscosity or torque are
-over-range and below zero; an empty cell or `-.-` of the others is not recorded.
+over-range and below zero; an empty cell or `-.-` of the others is not recorded, nor is a
+temperature below absolute zero (-327.67). An elapsed time below zero is refused.
 
 Uncertainties
 -------------
@@ -41,6 +42,7 @@ from pipeline.formats.viscometer import (
     clock_column,
     number,
     recording,
+    temperature_K,
 )
 
 _NAME, _VERSION = "viscometer_csv", 1
@@ -142,6 +144,9 @@ def _reading(file: RawFile, at: int, line: str, labels: Sequence[str]) -> Readin
                 missing = "below-zero"
             elif cell or label in _VISCOSITY:
                 numbers[name] = to_si(number(file, at, column, cell, label), unit)
+        elif label == "temperature_C":
+            if (kelvin := temperature_K(file, at, column, cell)) is not None:
+                numbers["temperature_K"] = kelvin
         elif not NO_PROBE.fullmatch(cell):
             name, unit = _OTHERS[label]
             numbers[name] = to_si(number(file, at, column, cell, label), unit)
@@ -156,6 +161,12 @@ def _elapsed(
     times = np.array(
         [to_si(number(file, r.line, column, r.clock, label), _ELAPSED[label]) for r in readings]
     )
+    if times.size and times[0] < 0:
+        first = readings[0]
+        raise RawFileError(
+            file.path, "a time before mixing", first.line, column, first.clock,
+            "log the time since mixing; -1 often stands for a time that is not known",
+        )  # fmt: skip
     for before, r, step in zip(readings[:-1], readings[1:], np.diff(times), strict=True):
         if step < 0:
             raise RawFileError(

@@ -20,7 +20,7 @@ from pipeline.techniques.viscosity.clock import since_mixing_s
 from pipeline.techniques.viscosity.config import ViscosityConfig
 from pipeline.techniques.viscosity.figure import draw
 from pipeline.techniques.viscosity.flow_curve import flow_curve_values
-from pipeline.techniques.viscosity.pooled import fit_law, fit_runs, laws_of
+from pipeline.techniques.viscosity.pooled import fit_law, fit_runs, laws_of, refuse_mixed_units
 from pipeline.techniques.viscosity.readings import Readings, audited, from_curve
 from pipeline.techniques.viscosity.time_law import TimeLaw
 from pipeline.techniques.viscosity.values import (
@@ -35,7 +35,7 @@ from pipeline.techniques.viscosity.values import (
 )
 from pipeline.techniques.viscosity.window import Windowed, windowed
 
-VERSION = 1
+VERSION = 2
 
 
 def reduce(specimen: Specimen, recording: Recording | None, context: Context) -> Measurement:
@@ -117,6 +117,11 @@ def summarise(measurements: Sequence[Measurement], context: Context) -> Summary:
         return summary
     windows = [windowed(from_curve(m.curve), config) for m in runs]
     specimen = runs[0].specimen
+    try:
+        refuse_mixed_units({m.specimen.id: w for m, w in zip(runs, windows, strict=True)})
+    except FitRefused as error:
+        mixed = tuple(_refusal(specimen, key, error) for key in _ALWAYS)
+        return Summary((), (), (*summary.refusals, *mixed))
     try:
         law, levels = fit_runs(windows, config)
     except FitRefused as error:

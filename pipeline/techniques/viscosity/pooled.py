@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -21,6 +21,8 @@ from pipeline.techniques.viscosity.values import CONSISTENCY, INDEX, VISCOSITY
 from pipeline.techniques.viscosity.window import Windowed
 
 _CHECKED_TIMES = 5
+# Batches of one mixture never differ by so much; Pa.s and mPa.s differ by a thousand.
+_ANOTHER_UNIT = 100.0
 
 
 def fit_law(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeLaw:
@@ -54,6 +56,26 @@ def fit_runs(windows: Sequence[Windowed], config: ViscosityConfig) -> tuple[Time
     levels = np.array([_level(law, window) for window in windows])
     levels /= levels.mean()
     return fit_law([_scaled(w, f) for w, f in zip(windows, levels, strict=True)], config), levels
+
+
+def refuse_mixed_units(windows: Mapping[str, Windowed]) -> None:
+    """Refuse runs of one material that lie so far apart that one of them is in another unit.
+
+    Parameters
+    ----------
+    windows : specimen to its readings
+
+    Raises
+    ------
+    FitRefused : one run lies more than 100 times above another
+    """
+    middles = {name: float(np.median(w.readings.viscosity_Pas)) for name, w in windows.items()}
+    low, high = (choose(middles, key=middles.__getitem__) for choose in (min, max))
+    if middles[high] > _ANOTHER_UNIT * middles[low]:
+        raise FitRefused(
+            f"{high} lies {middles[high] / middles[low]:.3g} times above {low}, as when Pa.s and "
+            "mPa.s are mixed; correct the unit over the column of the one that is wrong"
+        )
 
 
 def _scaled(window: Windowed, level: float) -> Windowed:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pipeline.core.errors import FitRefused, OutOfRange
 from pipeline.core.instruments import Machine
@@ -19,6 +20,9 @@ from pipeline.techniques.viscosity.config import ViscosityConfig
 # instrument that cuts where it should round.
 _TORQUE_STEP = 0.001
 _VISCOSITY_STEP_PAS = 0.001
+# A display at its end repeats its greatest number although the liquid was rising until then.
+_STUCK_READINGS = 3
+_RISING_STEPS = 6.0  # of what the file resolves, over as many readings before
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,9 +102,14 @@ def audited(
         raise FitRefused("the file has no viscosity")
     viscosity = columns["viscosity_Pas"]
     line = columns["line"] if "line" in columns else np.arange(1.0, len(viscosity) + 1)
+    stuck = _stuck(viscosity)
+    stuck_flags = _left_out(
+        "at-its-limit", f"{viscosity[stuck].max():g} Pa.s again and again at the top of a rise, as "
+        "a display at the end of its range shows it", line[stuck],
+    ) if stuck.any() else []  # fmt: skip
     if "rotor" not in columns or "speed_rpm" not in columns:
-        readings = _of_reading(time_s, viscosity, line, config)
-        return _positive(readings)
+        readings = _positive(_of_reading(time_s, viscosity, line, config).where(~stuck))
+        return replace(readings, flags=(*stuck_flags, *readings.flags))
     rotor, speed = columns["rotor"], columns["speed_rpm"]
     full = _full_scales(rotor, speed, line)
     readings = Readings(
@@ -110,8 +119,8 @@ def audited(
         f"{machine.u_torque_calibration:.2%} calibration, shared)",
     )  # fmt: skip
     torque = viscosity / full
-    keep = np.ones(len(viscosity), dtype=bool)
-    flags: list[Flag] = []
+    keep = ~stuck
+    flags: list[Flag] = [*stuck_flags]
     if "torque" in columns:
         slack = _TORQUE_STEP + _VISCOSITY_STEP_PAS / full
         wrong = np.abs(columns["torque"] - torque) > slack
@@ -135,6 +144,25 @@ def audited(
     good = readings.where(keep & ~outside)
     changes = _changes(good)
     return replace(good, flags=(*flags, *changes))
+
+
+def _stuck(viscosity: FloatArray) -> NDArray[np.bool_]:
+    """Find an over-range display that shows a plausible number: the greatest one, repeated.
+
+    A liquid that rose by several steps of the display until then does not stop from one reading
+    to the next; one that levels off, or is constant, is left alone.
+    """
+    none = np.zeros(len(viscosity), dtype=bool)
+    top = viscosity == viscosity.max()
+    first, count = int(np.argmax(top)), int(np.count_nonzero(top))
+    last = first + count
+    if count < _STUCK_READINGS or first < _STUCK_READINGS or not top[first:last].all():
+        return none
+    step = np.diff(np.unique(viscosity)).min()
+    before = viscosity[first - _STUCK_READINGS : first]
+    if np.any(np.diff(before) <= 0) or np.ptp(before) <= _RISING_STEPS * step:
+        return none
+    return top
 
 
 def _of_reading(
