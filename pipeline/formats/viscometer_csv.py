@@ -8,7 +8,8 @@ with one time and one viscosity among them.
 Format
 ------
 Remarks start with `#`. Labels: one of `time_s`, `time_min`, `time_h`, `elapsed_s`, `elapsed_min`,
-`elapsed_h` (elapsed time since mixing) or `timestamp` (stamps as in `ndj8s`); one of
+`elapsed_h` (elapsed time since mixing) or `timestamp` (stamps as in `ndj8s`), or both where the
+stamp is that of the start and stands in every line while the time elapses since then; one of
 `viscosity_mPas`, `viscosity_Pas`; and, as far as there are any, `rotor`, `speed_rpm`,
 `torque_percent`, `temperature_C`. Decimal points. `EEEE` and `----` in the viscosity or torque are
 over-range and below zero; an empty cell or `-.-` of the others is not recorded, nor is a
@@ -30,7 +31,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from pipeline.core.errors import RawFileError
-from pipeline.core.records import Recording
+from pipeline.core.records import FloatArray, Recording
 from pipeline.core.units import to_si
 from pipeline.formats.format import Format
 from pipeline.formats.rawfile import RawFile
@@ -54,6 +55,7 @@ _OTHERS = {
     "torque_percent": ("torque", "percent"),
     "temperature_C": ("temperature_K", "C"),
 }
+_SINCE_START = "since_start_s"
 _KNOWN = {*_ELAPSED, "timestamp", *_VISCOSITY, *_OTHERS}
 
 
@@ -97,7 +99,9 @@ def _read(file: RawFile) -> Recording:
         _reading(file, at, line.rstrip("\r"), labels)
         for at, line in enumerate(lines[first + 1 :], start=first + 2)
     ]
-    if "timestamp" in labels:
+    if "timestamp" in labels and any(label in _ELAPSED for label in labels):
+        clock, times = _since_start(file, readings, labels)
+    elif "timestamp" in labels:
         clock, times = clock_column(file, [(r.line, r.clock) for r in readings])
     else:
         clock, times = "time_s", _elapsed(file, readings, labels)
@@ -113,7 +117,7 @@ def _check(file: RawFile, line: int, labels: Sequence[str]) -> None:
                 file.path, "an unknown label", line, column, label,
                 f"known labels: {', '.join(sorted(_KNOWN))}",
             )  # fmt: skip
-    for known in ({*_ELAPSED, "timestamp"}, set(_VISCOSITY), *({label} for label in _OTHERS)):
+    for known in ({*_ELAPSED}, {"timestamp"}, set(_VISCOSITY), *({label} for label in _OTHERS)):
         same = [label for label in labels if label in known]
         if len(same) > 1:
             raise RawFileError(
@@ -134,8 +138,10 @@ def _reading(file: RawFile, at: int, line: str, labels: Sequence[str]) -> Readin
     clock, missing = "", ""
     numbers: dict[str, float] = {}
     for column, (label, cell) in enumerate(zip(labels, cells, strict=True), start=1):
-        if label in _ELAPSED or label == "timestamp":
+        if label == "timestamp" or (label in _ELAPSED and "timestamp" not in labels):
             clock = cell
+        elif label in _ELAPSED:
+            numbers[_SINCE_START] = to_si(number(file, at, column, cell, label), _ELAPSED[label])
         elif label in _VISCOSITY or label == "torque_percent":
             name, unit = _OTHERS.get(label) or ("viscosity_Pas", _VISCOSITY[label])
             if OVER_RANGE.fullmatch(cell):
@@ -153,9 +159,29 @@ def _reading(file: RawFile, at: int, line: str, labels: Sequence[str]) -> Readin
     return Reading(at, clock, numbers, missing)
 
 
-def _elapsed(
+def _since_start(
     file: RawFile, readings: Sequence[Reading], labels: Sequence[str]
-) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+) -> tuple[str, FloatArray]:
+    """Add the time elapsed to the one stamp that every line repeats."""
+    column = labels.index("timestamp") + 1
+    for r in readings:
+        if r.clock != readings[0].clock:
+            raise RawFileError(
+                file.path, "two clocks: a stamp that changes beside an elapsed time", r.line,
+                column, r.clock, "export one of the two",
+            )  # fmt: skip
+    clock, start = clock_column(file, [(r.line, r.clock) for r in readings[:1]])
+    times = np.array([r.numbers[_SINCE_START] for r in readings])
+    back = np.flatnonzero(np.diff(times) < 0)
+    if back.size:
+        raise RawFileError(
+            file.path, "the elapsed time steps back", readings[back[0] + 1].line,
+            mend="one file holds one run, in the order of time",
+        )  # fmt: skip
+    return clock, np.asarray(start.sum() + times)
+
+
+def _elapsed(file: RawFile, readings: Sequence[Reading], labels: Sequence[str]) -> FloatArray:
     label = next(known for known in labels if known in _ELAPSED)
     column = labels.index(label) + 1
     times = np.array(

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import stdtridf
 
+from pipeline.core.errors import FitRefused
 from pipeline.core.laws import FORMS, POLYNOMIAL, POWER_LAW_FLUID
 from pipeline.core.properties import property_key
 from pipeline.core.records import FloatArray, Law, Origin, Specimen

@@ -153,7 +153,7 @@ def _stuck(viscosity: FloatArray) -> NDArray[np.bool_]:
     to the next; one that levels off, or is constant, is left alone.
     """
     none = np.zeros(len(viscosity), dtype=bool)
-    top = viscosity == viscosity.max()
+    top: NDArray[np.bool_] = viscosity == viscosity.max()
     first, count = int(np.argmax(top)), int(np.count_nonzero(top))
     last = first + count
     if count < _STUCK_READINGS or first < _STUCK_READINGS or not top[first:last].all():
