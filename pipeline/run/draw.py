@@ -42,7 +42,7 @@ def figure_jobs(
     """List every figure with the components it depends on."""
     synthetic = {s.campaign.name: s.campaign.info.synthetic for s in bench.surveys if s.campaign}
     for g in groups:
-        if TECHNIQUES[g.technique].figure is None or (g.summary and not g.measurements):
+        if TECHNIQUES[g.technique].figure is None or (not bench.dry and g.summary is None):
             continue
         said = readable_conditions(dict(g.conditions)) if g.conditions else ""
         slug = "-".join(

@@ -293,8 +293,8 @@ def test_a_whole_run_names_every_rejected_file_and_uses_none(tmp_path: Path) -> 
     assert set(found) == {f"x{i}" for i in range(len(bad))}
     for i, trap in enumerate(bad):
         assert trap.rejected.partition(",")[2] in found[f"x{i}"]
-    (card,) = (folders.processed / "cards").glob("*.json")
-    origins = [o["path"] for p in json.loads(card.read_text())["properties"] for o in p["origins"]]
+    cards = [json.loads(p.read_text()) for p in (folders.processed / "cards").glob("*.json")]
+    origins = [o["path"] for card in cards for p in card["properties"] for o in p["origins"]]
     assert set(origins) == {"traps/viscosity/good"}
 
 
