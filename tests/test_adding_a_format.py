@@ -1,0 +1,57 @@
+"""The page on adding a format shows files as they are and messages as they come."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from pipeline.core.errors import RawFileError
+from pipeline.formats import FORMATS
+from pipeline.formats.detect import detect
+from pipeline.formats.format import Format
+from pipeline.formats.rawfile import RawFile
+from pipeline.techniques import TECHNIQUES
+from tests.formats.samples import BY_NAME
+from tests.run.conftest import ROOT
+
+PAGE = (ROOT / "docs" / "adding-a-format.md").read_text(encoding="utf-8")
+LIST = (ROOT / "docs" / "formats.md").read_text(encoding="utf-8")
+BLOCKS = re.findall(r"```(?:python|text)\n(.*?)```", PAGE, re.DOTALL)
+EXPORT, MODULE, LINE, SAMPLE, CUT, GROUPED, ROW = BLOCKS
+NEXYGEN = BY_NAME["nexygen"]
+
+
+def test_the_page_shows_the_files_as_they_are() -> None:
+    assert NEXYGEN.data.decode("utf-16").replace("\r\n", "\n") == EXPORT
+    folder = ROOT / "pipeline" / "formats"
+    assert (folder / "nexygen.py").read_text(encoding="utf-8") == MODULE
+    assert LINE in (folder / "__init__.py").read_text(encoding="utf-8")
+    assert SAMPLE in (ROOT / "tests" / "formats" / "samples.py").read_text(encoding="utf-8")
+    assert ROW in LIST
+
+
+@pytest.mark.parametrize(
+    ("file", "message"),
+    [
+        (NEXYGEN.raw([*NEXYGEN.lines[:-1], NEXYGEN.lines[-1][:-1]], end=""), CUT),
+        (NEXYGEN.with_cell(0, 1, "1,234.5"), GROUPED),
+    ],
+)
+def test_the_page_says_what_a_laboratory_will_see(file: RawFile, message: str) -> None:
+    with pytest.raises(RawFileError) as caught:
+        detect(file).read(file)
+    assert f"{caught.value}\n" == message
+
+
+@pytest.mark.parametrize("form", FORMATS, ids=lambda form: form.name)
+def test_every_format_stands_in_the_list_under_its_title(form: Format) -> None:
+    assert LIST.count(f"| `{form.name}` | {form.title}") == 1
+
+
+def test_the_list_holds_no_format_and_lacks_no_technique_of_the_house() -> None:
+    rows = re.findall(r"^\| `(\w+)` \|", LIST, re.MULTILINE)
+    assert rows == [form.name for form in FORMATS]
+    named = {row for row in re.findall(r"^\| (\w+) \|", LIST, re.MULTILINE)}
+    assert set(TECHNIQUES) - {"handling"} <= named
+    assert "handling/observations.csv" in LIST
