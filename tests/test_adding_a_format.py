@@ -52,6 +52,6 @@ def test_every_format_stands_in_the_list_under_its_title(form: Format) -> None:
 def test_the_list_holds_no_format_and_lacks_no_technique_of_the_house() -> None:
     rows = re.findall(r"^\| `(\w+)` \|", LIST, re.MULTILINE)
     assert rows == [form.name for form in FORMATS]
-    named = {row for row in re.findall(r"^\| (\w+) \|", LIST, re.MULTILINE)}
+    named = set(re.findall(r"^\| (\w+) \|", LIST, re.MULTILINE))
     assert set(TECHNIQUES) - {"handling"} <= named
     assert "handling/observations.csv" in LIST

@@ -108,6 +108,12 @@ class Machine(Declared):
         ge=0,
         description="viscometer, part of full scale, shared: a limit of 2 % as two sigma",
     )
+    spring_torque: float = Field(
+        default=1.0,
+        gt=0,
+        description="viscometer, full torque over that of an NDJ-8S (LV type): its full scales are "
+        "as many times higher. Brookfield's torque constants are LV 0.09373, RV 1, HA 2, HB 8",
+    )
     torque_noise: float = Field(
         default=0.003, gt=0, description="viscometer, part of full scale, of a single reading"
     )

@@ -10,8 +10,8 @@ SPEEDS_RPM = (0.3, 0.6, 1.5, 3.0, 6.0, 12.0, 30.0, 60.0)
 _FULL_SCALE_AT_60_RPM_PAS = {1: 0.1, 2: 0.5, 3: 2.0, 4: 10.0}
 
 
-def full_scale_Pas(rotor: int, speed_rpm: float) -> float:
-    r"""Give the viscosity at full torque, $\eta_{100} = \eta_{100}(60) \cdot 60 / N$ `[Pa.s]`.
+def full_scale_Pas(rotor: int, speed_rpm: float, spring_torque: float = 1.0) -> float:
+    r"""Give the viscosity at full torque, $\eta_{100} = s\, \eta_{100}(60) \cdot 60 / N$ `[Pa.s]`.
 
     A reading obeys $\eta = \eta_{100} T / 100 \%$ with the torque T in percent.
 
@@ -19,6 +19,7 @@ def full_scale_Pas(rotor: int, speed_rpm: float) -> float:
     ----------
     rotor : 1 to 4
     speed_rpm : one of `SPEEDS_RPM`
+    spring_torque : s, full torque of the spring over that of an NDJ-8S
 
     Raises
     ------
@@ -31,4 +32,4 @@ def full_scale_Pas(rotor: int, speed_rpm: float) -> float:
     if speed_rpm not in SPEEDS_RPM:
         speeds = ", ".join(f"{s:g}" for s in SPEEDS_RPM)
         raise OutOfRange(f"an NDJ-8S turns at {speeds} rpm, not at {speed_rpm:g}")
-    return _FULL_SCALE_AT_60_RPM_PAS[rotor] * 60.0 / speed_rpm
+    return spring_torque * _FULL_SCALE_AT_60_RPM_PAS[rotor] * 60.0 / speed_rpm

@@ -72,12 +72,14 @@ def fit_power_law(
     factor_degree: int,
     exponent_degree: int,
     errors: ErrorModel,
+    sigma: ArrayLike | None = None,
 ) -> PowerLawFit:
     r"""Fit K and m to y > 0, by the error model of the instrument.
 
     Errors that are a constant part of the reading: minimise
     $\sum_i (\ln y_i - \ln K(t_i) - m(t_i) \ln q_i)^2$. Errors that are a constant part of full
-    scale: minimise $\sum_i (y_i - K(t_i) q_i^{m(t_i)})^2$. The error scale is estimated.
+    scale: minimise $\sum_i (y_i - K(t_i) q_i^{m(t_i)})^2 / \sigma_i^2$. The error scale is
+    estimated.
 
     Parameters
     ----------
@@ -86,6 +88,7 @@ def fit_power_law(
     y : shape (n,)
     factor_degree, exponent_degree : of K and m in t, 0 or more
     errors : `"of reading"` or `"of full scale"`
+    sigma : relative sizes of the errors of y where full scales differ, shape (n,); equal if None
 
     Raises
     ------
@@ -114,6 +117,7 @@ def fit_power_law(
         lambda b: jacobian(b, bases, logs),
         _start(values, bases, logs),
         np.log(values) if errors == "of reading" else values,
+        sigma,
     )
     split = factor_degree + 1
     least = lowest(fit.parameters[:split])

@@ -2,7 +2,8 @@ r"""A power-law fluid whose consistency and index change with time: one surface,
 
 $\mu_\mathrm{app}(t, \dot\gamma) = K(t)\, \dot\gamma^{\,n(t) - 1}$ at the nominal shear rate. As
 full scale times rate is one stress for all speeds of a rotor, errors of a constant part of full
-scale are equal errors of the stress $\tau = \mu \dot\gamma = K \dot\gamma^n$, and that is fitted.
+scale are equal errors of the stress $\tau = \mu \dot\gamma = K \dot\gamma^n$, and that is fitted,
+weighted where a run goes on with another rotor.
 """
 
 from __future__ import annotations
@@ -45,14 +46,16 @@ class Sweep:
 
 
 def sweeps(readings: Readings, gap_s: float) -> list[Sweep]:
-    """Part a run into sweeps: a speed that comes again, or a pause, begins another one."""
+    """Part a run into sweeps: a speed that comes again, a rotor or a pause begins another one."""
     found = []
     first, seen = 0, set[float]()
     for i in range(len(readings) + 1):
         ends = i == len(readings) or (
             i > first
             and (
-                readings.speed_rpm[i] in seen or readings.time_s[i] - readings.time_s[i - 1] > gap_s
+                readings.speed_rpm[i] in seen
+                or readings.rotor[i] != readings.rotor[i - 1]
+                or readings.time_s[i] - readings.time_s[i - 1] > gap_s
             )
         )
         if ends:
@@ -72,25 +75,28 @@ def is_swept(readings: Readings, config: ViscosityConfig) -> bool:
 
 
 def rate_factor(readings: Readings, config: ViscosityConfig) -> RateFactor:
-    """Find the declared shear rate per speed of the one rotor that was used.
+    """Find the declared shear rate per speed of the rotors that were used.
 
     Raises
     ------
-    FitRefused : several rotors, or none declared for this one
+    FitRefused : none is declared for a rotor, or another one than for the other rotor
     """
     rotors = sorted({f"{r:g}" for r in readings.rotor.tolist()})
-    if len(rotors) > 1:
+    for rotor in rotors:
+        if rotor not in config.rate_factors:
+            known = ", ".join(sorted(config.rate_factors))
+            raise FitRefused(
+                f"no shear rate is declared for rotor {rotor} (there is one for: {known}); declare "
+                "[viscosity.rate_factors] with its source"
+            )
+    factors = {rotor: config.rate_factors[rotor] for rotor in rotors}
+    if len({factor.per_s_per_rpm for factor in factors.values()}) > 1:
+        said = " and ".join(f"{f.per_s_per_rpm:g} 1/s per rpm ({r})" for r, f in factors.items())
         raise FitRefused(
-            f"a power law needs one rotor, not {' and '.join(rotors)}: their shear rates differ; "
-            "log each rotor's run to a file of its own"
+            f"a power law needs rotors of one shear rate, and those declared are {said}; log each "
+            "rotor's run to a file of its own"
         )
-    if rotors[0] not in config.rate_factors:
-        known = ", ".join(sorted(config.rate_factors))
-        raise FitRefused(
-            f"no shear rate is declared for rotor {rotors[0]} (there is one for: {known}); declare "
-            "[viscosity.rate_factors] with its source"
-        )
-    return config.rate_factors[rotors[0]]
+    return factors[rotors[0]]
 
 
 def fit_fluid(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeLaw | None:
@@ -111,8 +117,9 @@ def fit_fluid(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeLaw |
     stages = two_stages(swept, factor.per_s_per_rpm)
     degrees = stages.factor.degree, stages.index.degree
     stress = readings.viscosity_Pas * rates
-    surface = fit_power_law(times, rates, stress, *degrees, "of full scale")
-    score = _scores(surface, times, rates, stress)
+    sigma = readings.noise_Pas * rates
+    surface = fit_power_law(times, rates, stress, *degrees, "of full scale", sigma)
+    score = _scores(surface, times, rates, stress, sigma)
     if score["Newtonian"] <= score["power law"] + DECISIVE:
         return None
     coefficients = np.concatenate([surface.factor, surface.exponent])
@@ -128,7 +135,7 @@ def fit_fluid(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeLaw |
             surface.covariance,
             surface.fit.error_variance,
             slopes * rates[:, None],
-            np.ones(len(times)),
+            sigma,
             readings.calibration_Pas * rates,
         ),
         valid=common_range([window.valid for window, _ in swept]),
@@ -243,12 +250,18 @@ def _chosen(
 
 
 def _scores(
-    surface: PowerLawFit, times: FloatArray, rates: FloatArray, stress: FloatArray
+    surface: PowerLawFit,
+    times: FloatArray,
+    rates: FloatArray,
+    stress: FloatArray,
+    sigma: FloatArray,
 ) -> dict[str, float]:
     """AICc of the surface and of a Newtonian liquid whose viscosity is a polynomial like K."""
     scale = float(times.max())
     newtonian = fit_linear(
-        np.stack([rates * (times / scale) ** k for k in range(len(surface.factor))], axis=1), stress
+        np.stack([rates * (times / scale) ** k for k in range(len(surface.factor))], axis=1),
+        stress,
+        sigma,
     )
     return {"Newtonian": aicc(newtonian), "power law": aicc(surface.fit)}
 

@@ -111,7 +111,7 @@ def audited(
         readings = _positive(_of_reading(time_s, viscosity, line, config).where(~stuck))
         return replace(readings, flags=(*stuck_flags, *readings.flags))
     rotor, speed = columns["rotor"], columns["speed_rpm"]
-    full = _full_scales(rotor, speed, line)
+    full = _full_scales(rotor, speed, line, machine.spring_torque)
     readings = Readings(
         time_s, viscosity, machine.torque_noise * full, machine.u_torque_calibration * full, speed,
         rotor, line,
@@ -181,14 +181,16 @@ def _positive(readings: Readings) -> Readings:
     return replace(readings.where(good), flags=tuple(flags))
 
 
-def _full_scales(rotor: FloatArray, speed: FloatArray, line: FloatArray) -> FloatArray:
+def _full_scales(
+    rotor: FloatArray, speed: FloatArray, line: FloatArray, spring_torque: float
+) -> FloatArray:
     known: dict[tuple[float, float], float] = {}
     for pair, at in zip(zip(rotor.tolist(), speed.tolist(), strict=True), line, strict=True):
         if pair not in known:
             try:
                 if not float(pair[0]).is_integer():
                     raise OutOfRange(f"an NDJ-8S has rotors 1 to 4, not {pair[0]:g}")
-                known[pair] = full_scale_Pas(int(pair[0]), pair[1])
+                known[pair] = full_scale_Pas(int(pair[0]), pair[1], spring_torque)
             except OutOfRange as error:
                 raise FitRefused(f"line {int(at)}: {error}") from error
     return np.array([known[pair] for pair in zip(rotor.tolist(), speed.tolist(), strict=True)])
@@ -201,10 +203,12 @@ def _left_out(name: str, why: str, lines: FloatArray) -> list[Flag]:
 
 
 def _changes(readings: Readings) -> list[Flag]:
-    """Say where rotor or speed was changed, unless the speeds are swept all the time."""
+    """Say where rotor or speed was changed; of speeds that are swept all the time, the rotor."""
     settings = list(zip(readings.rotor.tolist(), readings.speed_rpm.tolist(), strict=True))
     changed = [i for i in range(1, len(settings)) if settings[i] != settings[i - 1]]
-    if not changed or len(changed) > len(set(settings)) + 3:
+    if len(changed) > len(set(settings)) + 3:
+        changed = [i for i in changed if settings[i][0] != settings[i - 1][0]]
+    if not changed:
         return []
     said = "; ".join(
         f"{settings[i - 1][0]:g}#{settings[i - 1][1]:g} to {settings[i][0]:g}#{settings[i][1]:g} "
