@@ -9,6 +9,7 @@ import sys
 from collections import Counter
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,7 +19,13 @@ from pipeline.core.technique import Context
 from pipeline.techniques import viscosity
 from pipeline.techniques.viscosity.config import ViscosityConfig
 from pipeline.twin.truth import TrueViscosity, true_viscosities
-from pipeline.twin.viscosity import BATCHES, VISCOMETER, SimulatedRun, simulate_viscosity
+from pipeline.twin.viscosity import (
+    BATCHES,
+    VISCOMETER,
+    SimulatedRun,
+    machine_of,
+    simulate_viscosity,
+)
 
 CONTEXT = Context(ViscosityConfig(), VISCOMETER, {})
 _CHECKED_PER_LAW = 12
@@ -27,9 +34,9 @@ _CHECKED_PER_LAW = 12
 def in_memory(run: SimulatedRun) -> tuple[Specimen, Recording]:
     """Register row and recording of a simulated run, as its file would give them."""
     kept = ~run.over
-    columns = {
+    columns: dict[str, FloatArray] = {
         "time_s": run.time_s[kept],
-        "rotor": np.full(int(kept.sum()), float(run.rotor)),
+        "rotor": run.rotor[kept],
         "speed_rpm": run.speed_rpm[kept],
         "viscosity_Pas": run.viscosity_Pas[kept],
         "torque": run.torque[kept],
@@ -48,7 +55,8 @@ def one(task: tuple[int, str]) -> Counter[tuple[str, str, bool]]:
     seed, material = task
     truth = true_viscosities()[material]
     runs = [in_memory(simulate_viscosity(seed, material, b)) for b in range(1, BATCHES + 1)]
-    measurements = [viscosity.reduce(*run, CONTEXT) for run in runs]
+    context = replace(CONTEXT, machine=machine_of(material))
+    measurements = [viscosity.reduce(*run, context) for run in runs]
     summary = viscosity.summarise(measurements, CONTEXT)
     counts: Counter[tuple[str, str, bool]] = Counter()
     for record in summary.records:

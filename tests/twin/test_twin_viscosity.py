@@ -6,17 +6,20 @@ import csv
 import io
 from collections.abc import Mapping
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from pipeline.core.config import load_config
 from pipeline.core.errors import MissingProperty
 from pipeline.core.records import Law, Measurement, Recording, Specimen, Summary
 from pipeline.core.register import read_register
 from pipeline.core.technique import Context
+from pipeline.core.viscometer import full_scale_Pas
 from pipeline.formats.detect import detect
 from pipeline.formats.rawfile import RawFile
-from pipeline.techniques import viscosity
+from pipeline.techniques import TECHNIQUES, viscosity
 from pipeline.techniques.viscosity.config import ViscosityConfig
 from pipeline.twin.campaign import SEED
 from pipeline.twin.quirks import Quirk
@@ -31,13 +34,20 @@ from pipeline.twin.viscometer_quirks import (
 )
 from pipeline.twin.viscosity import (
     BATCHES,
+    ON_STRONGER_SPRING,
     RATE_PER_RPM_PER_S,
+    STRONGER,
     VISCOMETER,
+    machine_of,
     simulate_viscosity,
     viscosity_part,
 )
 
+ROOT = Path(__file__).resolve().parents[2]
 CONTEXT = Context(ViscosityConfig(), VISCOMETER, {})
+INSTRUMENTS = load_config(
+    ROOT / "config", {t.key: t.config for t in TECHNIQUES.values()}
+).instruments
 FILES = viscosity_part(SEED).files
 LOG = "viscosity/sylgard-182-10to1/synthetic-1.log"
 CSV = "viscosity/sylgard-182-40to1/synthetic-1.csv"
@@ -48,6 +58,11 @@ def register(files: Mapping[str, bytes] = FILES) -> dict[str, Specimen]:
     found = read_register(data, "viscosity/specimens.csv", "twin", "viscosity", (), {})
     assert found.errors == ()
     return {str(s.file): s for s in found.specimens}
+
+
+def context_of(row: Specimen) -> Context:
+    """The viscometer that the configuration declares under the name in the register."""
+    return replace(CONTEXT, machine=INSTRUMENTS.machine(row.notes["instrument"])[1])
 
 
 def read(path: str, files: Mapping[str, bytes] = FILES) -> Recording:
@@ -63,7 +78,9 @@ def spoilt(path: str, quirk: Quirk) -> Measurement:
 @pytest.fixture(scope="module")
 def measurements() -> dict[str, Measurement]:
     """Every run of the committed seed, reduced from its file."""
-    return {path: viscosity.reduce(row, read(path), CONTEXT) for path, row in register().items()}
+    return {
+        path: viscosity.reduce(row, read(path), context_of(row)) for path, row in register().items()
+    }
 
 
 @pytest.fixture(scope="module")
@@ -80,28 +97,23 @@ def law(summary: Summary, key: str = "viscosity") -> Law:
 
 
 @pytest.mark.parametrize(
-    ("material", "kind", "parts", "end_h"),
+    ("material", "kind", "parts"),
     [
-        ("sylgard-182-10to1", "polynomial", 2, 12.0),
-        ("sylgard-182-40to1", "polynomial", 2, 12.0),
-        ("sylgard-184-10to1", "polynomial", 5, 12.0),
-        ("sylgard-184-40to1", "polynomial", 4, 12.0),
-        ("sylgard-186-10to1", "power-law-fluid", (4, 3), 5.2),
-        ("sylgard-186-40to1", "power-law-fluid", (2, 2), 12.0),
+        ("sylgard-182-10to1", "polynomial", 2),
+        ("sylgard-182-40to1", "polynomial", 2),
+        ("sylgard-184-10to1", "polynomial", 5),
+        ("sylgard-184-40to1", "polynomial", 4),
+        ("sylgard-186-10to1", "power-law-fluid", (4, 3)),
+        ("sylgard-186-40to1", "power-law-fluid", (2, 2)),
     ],
 )
-def test_table_2_comes_out_as_curves_within_2_percent_and_inside_its_intervals(
-    summaries: dict[str, Summary],
-    material: str,
-    kind: str,
-    parts: int | tuple[int, int],
-    end_h: float,
+def test_table_2_comes_out_as_curves_over_1_to_12_h_within_2_percent_and_inside_its_intervals(
+    summaries: dict[str, Summary], material: str, kind: str, parts: int | tuple[int, int]
 ) -> None:
     truth, found = true_viscosities()[material], law(summaries[material])
     assert found.kind == kind
     assert (found.parts or len(found.coefficients)) == parts
-    assert found.valid[0] == 3600.0
-    assert found.valid[1] == pytest.approx(end_h * 3600.0, rel=0.02)
+    assert found.valid == (3600.0, 43200.0)
     for rate in found.rates or (None,):
         for time_s in np.linspace(*found.valid, 60).tolist():
             true = float(truth(np.array([time_s]), np.array([rate or 1.0]))[0])
@@ -172,7 +184,12 @@ def test_every_row_says_that_it_is_synthetic() -> None:
     for path, data in FILES.items():
         if not path.endswith("specimens.csv"):
             assert data.startswith(b"# SYNTHETIC: simulated, not measured\n")
-    assert {row["instrument"] for row in rows} == {"simulated NDJ-8S"}
+    assert {row["instrument"] for row in rows if row["material"] != ON_STRONGER_SPRING} == {
+        "simulated NDJ-8S"
+    }
+    assert {row["instrument"] for row in rows if row["material"] == ON_STRONGER_SPRING} == {
+        "simulated RV-type viscometer, full scale 10.669 times that of an NDJ-8S"
+    }
 
 
 def test_the_same_seed_gives_the_same_run_and_another_does_not() -> None:
@@ -184,11 +201,38 @@ def test_the_same_seed_gives_the_same_run_and_another_does_not() -> None:
         simulate_viscosity(SEED, "ecoflex", 1)
 
 
-def test_the_law_of_186_10to1_leaves_the_rotor_behind_before_12_h() -> None:
-    truth = true_viscosities()["sylgard-186-10to1"]
+def test_186_10to1_is_beyond_an_ndj_8s_and_within_the_stronger_spring() -> None:
+    truth = true_viscosities()[ON_STRONGER_SPRING]
     rate = np.array([RATE_PER_RPM_PER_S * 0.3])
-    assert truth(np.array([12 * 3600.0]), rate)[0] / 2000.0 == pytest.approx(6.5, abs=0.1)
-    assert simulate_viscosity(SEED, "sylgard-186-10to1", 1).time_s[-1] < 7 * 3600.0
+    end = truth(np.array([12 * 3600.0]), rate)[0]
+    assert end / full_scale_Pas(4, 0.3) == pytest.approx(6.5, abs=0.1)
+    assert truth(np.array([6.0 * 3600.0]), rate)[0] > full_scale_Pas(4, 0.3)
+    assert end / full_scale_Pas(4, 0.3, STRONGER.spring_torque) == pytest.approx(0.61, abs=0.01)
+    run = simulate_viscosity(SEED, ON_STRONGER_SPRING, 1)
+    kept = ~run.over
+    assert sorted(set(run.rotor.tolist())) == [3, 4]
+    full = np.array(
+        [
+            full_scale_Pas(int(r), s, STRONGER.spring_torque)
+            for r, s in zip(run.rotor[kept].tolist(), run.speed_rpm[kept].tolist(), strict=True)
+        ]
+    )
+    assert np.abs(run.viscosity_Pas[kept] / full - run.torque[kept]).max() < 0.0006
+
+
+def test_the_configuration_declares_the_viscometers_that_the_twin_simulates() -> None:
+    for row in register().values():
+        declared = context_of(row).machine.model_dump(exclude={"match", "source"})
+        assert declared == machine_of(row.material).model_dump(exclude={"match", "source"})
+
+
+def test_the_stronger_spring_taken_for_an_ndj_8s_is_refused() -> None:
+    path = f"viscosity/{ON_STRONGER_SPRING}/synthetic-1.log"
+    measured = viscosity.reduce(register()[path], read(path), CONTEXT)
+    assert measured.values == ()
+    assert measured.refusals[0].reason.startswith(
+        "viscosity, torque and speed contradict each other in "
+    )
 
 
 @pytest.mark.parametrize(
