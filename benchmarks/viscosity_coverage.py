@@ -40,7 +40,7 @@ def in_memory(run: SimulatedRun) -> tuple[Specimen, Recording]:
         "speed_rpm": run.speed_rpm[kept],
         "viscosity_Pas": run.viscosity_Pas[kept],
         "torque": run.torque[kept],
-        "line": np.flatnonzero(kept) + 3.0,
+        "line": np.flatnonzero(kept).astype(np.float64) + 3.0,
     }
     source = Source("synthetic", "0" * 64, 3, len(kept) + 2, "utf-8", "twin", 1)
     specimen = Specimen(

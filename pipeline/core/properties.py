@@ -57,6 +57,9 @@ _TABLE = (
     ),
     PropertyKey("flow_index", "n", "1", (0.05, 2.0), "power law, K rate^(n-1)"),
     PropertyKey("handling_time", "t_h", "s", (60.0, 1e7), "last clean printed line"),
+    PropertyKey(
+        "viscosity_at_handling_time", "mu_h", "Pa.s", (1e-3, 1e5), "law of viscosity, at t_h"
+    ),
     PropertyKey("mass_density", "rho", "kg/m3", (500.0, 3000.0), "ASTM D792"),
 )
 

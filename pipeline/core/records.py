@@ -268,6 +268,13 @@ class Law:
         variance = float(slopes @ np.asarray(self.covariance) @ slopes)
         return Quantity(value, self.unit, max(variance, 0.0) ** 0.5)
 
+    @property
+    def usual_rate(self) -> float | None:
+        """Geometric middle of `rates` `[1/s]`, to six digits; None for a form without a rate."""
+        if self.rates is None:
+            return None
+        return float(f"{math.sqrt(self.rates[0] * self.rates[1]):.6g}")
+
     def ci95(self, x: float, rate_per_s: float | None = None) -> tuple[float, float]:
         """Give the 95 % confidence interval of the law at x `[unit]`: Student's t."""
         from scipy.special import stdtrit  # reading a card must not cost it

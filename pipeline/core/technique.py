@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from pydantic import BaseModel
 
 from pipeline.core.instruments import Machine
 from pipeline.core.quantity import Quantity
-from pipeline.core.records import Measurement, Recording, Specimen, Summary
+from pipeline.core.records import Law, Measurement, Recording, Specimen, Summary
 from pipeline.core.register import SPECIMENS, RegisterForm
 
 
@@ -24,12 +24,15 @@ class Context:
     machine : the limits of the instrument that the register names
     needs : the properties of other techniques that it declared, for the same material
     timezone : of stamps without an offset, as the campaign declares it
+    laws : when a group is summarised, those laws among the properties needed of which its material
+        has exactly one in its campaign
     """
 
     config: Any
     machine: Machine
     needs: Mapping[str, Quantity]
     timezone: str = "UTC"
+    laws: Mapping[str, Law] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

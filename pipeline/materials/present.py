@@ -5,6 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Mapping, Sequence
 
+from pipeline.core.laws import EXPONENTIAL, POWER_LAW_FLUID, POWER_LAW_TO_GEL
 from pipeline.core.present import (
     SYNTHETIC_BANNER,
     aligned,
@@ -83,12 +84,32 @@ def law_text(law: Law) -> str:
     """Write the form of a law and the range in which it holds."""
     unit = readable_unit(law.valid[1], law.argument_unit)
     low, high = (f"{from_si(x, unit):.4g}" for x in law.valid)
-    terms = [f"{c:.4g}" + ("", " x", f" x^{k}")[min(k, 2)] for k, c in enumerate(law.coefficients)]
-    polynomial = " + ".join(terms).replace("+ -", "- ")
+    rates = ""
+    if law.rates is not None:
+        slow, fast = law.rates
+        rates = f", at nominal shear rates q from {slow:.4g} to {fast:.4g} 1/s"
     return (
-        f"{law.kind}, {polynomial} [{law.unit}] with x = {law.argument} "
-        f"[{law.argument_unit}], from {low} to {high} {unit}"
+        f"{law.kind}, {_form_text(law)} [{law.unit}] with x = {law.argument} "
+        f"[{law.argument_unit}], from {low} to {high} {unit}{rates}"
     )
+
+
+def _form_text(law: Law) -> str:
+    c = law.coefficients
+    if law.kind == EXPONENTIAL:
+        return f"{c[0]:.4g} exp({c[1]:.4g} x)"
+    if law.kind == POWER_LAW_TO_GEL:
+        return f"{c[0]:.4g} (1 - x / {c[1]:.4g})^-{c[2]:.4g}"
+    if law.kind == POWER_LAW_FLUID:
+        split = law.parts[0]
+        factor, index = (_polynomial_text(part) for part in (c[:split], c[split:]))
+        return f"K q^(n - 1), K = {factor}, n = {index}"
+    return _polynomial_text(c)
+
+
+def _polynomial_text(coefficients: Sequence[float]) -> str:
+    terms = [f"{c:.4g}" + ("", " x", f" x^{k}")[min(k, 2)] for k, c in enumerate(coefficients)]
+    return " + ".join(terms).replace("+ -", "- ")
 
 
 def _wrapped(line: str, indent: str = "  ") -> list[str]:

@@ -13,7 +13,7 @@ from pipeline.core.config import digest as config_digest
 from pipeline.core.instruments import Machine
 from pipeline.core.properties import REFERENCE_AGE
 from pipeline.core.quantity import Quantity
-from pipeline.core.records import Condition, Measurement, PropertyRecord, Specimen, Summary
+from pipeline.core.records import Condition, Law, Measurement, PropertyRecord, Specimen, Summary
 from pipeline.core.technique import Context, Technique
 from pipeline.formats import FORMATS
 from pipeline.run.book import STALE, Book, digest, key_of
@@ -70,6 +70,7 @@ class Bench:
     progress: Progress
     dry: bool
     records: dict[tuple[str, str], list[PropertyRecord]] = field(default_factory=dict)
+    laws: dict[tuple[str, str], list[Law]] = field(default_factory=dict)
 
 
 def in_order(techniques: Mapping[str, Technique]) -> list[Technique]:
@@ -118,18 +119,32 @@ def summarise(technique: Technique, measured: Sequence[Measured], bench: Bench) 
             "spine": str(SPINE_VERSION),
             **{f"specimen {m.specimen.id}": m.key for m in members},
         }
+        laws = _laws(technique, bench.laws.get((campaign, material), ()))
+        if laws:
+            parts["laws"] = digest(sorted(laws.items()))
         if bench.book.fresh("summary", bare.subject, parts):
             summary = None if bench.dry else bench.book.result("summary", bare.subject)
             key = key_of(parts)
         elif bench.dry:
             summary, key = None, STALE
         else:
-            summary = technique.summarise(good, Context(config, Machine(), {})) if good else None
+            summary = (
+                technique.summarise(good, Context(config, Machine(), {}, laws=laws))
+                if good
+                else None
+            )
             key = bench.book.keep("summary", bare.subject, parts, summary)
         result.append(Group(campaign, material, technique.key, conditions, key, good, summary))
         if summary:
             bench.records.setdefault((campaign, material), []).extend(summary.records)
+            bench.laws.setdefault((campaign, material), []).extend(summary.laws)
     return result
+
+
+def _laws(technique: Technique, laws: Sequence[Law]) -> dict[str, Law]:
+    """Find the laws that a technique needs; of two of one property neither is taken."""
+    found = {key: [law for law in laws if law.key == key] for key in technique.needs}
+    return {key: mine[0] for key, mine in found.items() if len(mine) == 1}
 
 
 def _tasks(technique: Technique, bench: Bench) -> Iterator[tuple[str, dict[str, str], Task]]:

@@ -5,10 +5,8 @@ line and the first defective one, or beyond the last line where the test or the 
 first: the value is the time of the last clean line, which an operator can rely on, and its record
 says whether it is the lower end of an interval or only a lower bound.
 
-Which viscosity a silicone has at that time is for a page to show that has both the record and the
-law of viscosity: evaluate the law at both ends of `ci95`, and say beside it that the two need not
-agree. Sikulskyi et al. 2022, section 2.2.1, found longer handling at a higher viscosity, and put it
-down to other strain rates and viscous heating while printing.
+Which viscosity the silicone has then stands beside it, with what it does not mean: see
+`_handling_viscosity`.
 """
 
 from __future__ import annotations
@@ -37,10 +35,12 @@ from pipeline.core.records import (
 from pipeline.core.register import RegisterForm
 from pipeline.core.technique import Context, Technique
 from pipeline.core.units import from_si
+from pipeline.techniques._handling_viscosity import KEY as VISCOSITY_THEN
+from pipeline.techniques._handling_viscosity import VISCOSITY, viscosity_then
 from pipeline.techniques._printed_lines import RUN_COLUMNS, Line, Run, line_of, runs_of
 
 KEY = "handling_time"
-VERSION = 1
+VERSION = 2
 
 
 class HandlingConfig(Declared):
@@ -58,6 +58,12 @@ class HandlingConfig(Declared):
         default=7200.0,
         gt=0.0,
         description="time between the last clean and the first defective line that is flagged",
+    )
+    max_temperature_difference_K: float = Field(
+        default=3.0,
+        gt=0.0,
+        description="by which the bed may differ from the viscometer's cup for the viscosity at "
+        "the handling time to be told",
     )
 
 
@@ -116,7 +122,12 @@ def summarise(measurements: Sequence[Measurement], context: Context) -> Summary:
                 "was before is not known: print the first line earlier"
             )
             return Summary((), refusals=(_refused(first, reason),))
-    return Summary((_record(runs, context.config),))
+    record = _record(runs, context.config)
+    config: HandlingConfig = context.config
+    then = viscosity_then(record, context.laws, config.max_temperature_difference_K)
+    if isinstance(then, Refusal):
+        return Summary((record,), refusals=(then,))
+    return Summary((record, then))
 
 
 def _refused(specimen: Specimen, reason: str) -> Refusal:
@@ -252,7 +263,7 @@ def figure(axes: Any, measurements: Sequence[Measurement], summary: Summary) -> 
         ]
         if points:
             axes.plot(*zip(*points, strict=True), linestyle="none", marker=mark, label=said)
-    for record in summary.records:
+    for record in (r for r in summary.records if r.key == KEY):
         low, high = (from_si(end, "h") for end in record.ci95)
         if math.isfinite(high):
             axes.axvspan(low, high, alpha=0.15, color="0.5", linewidth=0)
@@ -264,8 +275,8 @@ def figure(axes: Any, measurements: Sequence[Measurement], summary: Summary) -> 
 TECHNIQUE = Technique(
     key="handling",
     version=VERSION,
-    yields=(KEY,),
-    needs=(),
+    yields=(KEY, VISCOSITY_THEN),
+    needs=(VISCOSITY,),
     config=HandlingConfig,
     required=("time_s",),
     optional=("bed_temperature_K",),

@@ -154,6 +154,7 @@ def render(
     entries: Mapping[str, Entry],
     pictures: Mapping[str, Picture],
     found: Sequence[Discrepancy],
+    viscosities: Mapping[str, tuple[str, str]],
 ) -> bytes:
     """Write the page.
 
@@ -162,6 +163,7 @@ def render(
     entries : by id
     pictures : by name, `figure-8a`
     found : D1 to D7
+    viscosities : column of Table 3 to the viscosity at its handling time, and what to know of it
     """
     environment = Environment(
         loader=PackageLoader("pipeline.report.paper", "."),
@@ -179,7 +181,7 @@ def render(
         counts=_counts(entries),
         table1=_table1(entries),
         table2=_table2(entries),
-        table3=_table3(entries),
+        table3=_table3(entries, viscosities),
         table4=_table4(entries),
         table5=_table5(entries),
         totals=[cell(entries[f"text.total_of_{name}_um"]) for name in FILMS],
@@ -275,7 +277,9 @@ def _polynomial(coefficients: Sequence[float | None]) -> str:
     return " + ".join(reversed(terms)).replace("+ -", "− ")
 
 
-def _table3(entries: Mapping[str, Entry]) -> list[dict[str, object]]:
+def _table3(
+    entries: Mapping[str, Entry], viscosities: Mapping[str, tuple[str, str]]
+) -> list[dict[str, object]]:
     columns = []
     for name, row in printed.part("table3").items():
         material, bed_C = run_of(name)
@@ -284,6 +288,7 @@ def _table3(entries: Mapping[str, Entry]) -> list[dict[str, object]]:
                 "name": title_of(material) + (f" at {bed_C:g} °C" if bed_C is not None else ""),
                 "censored": "right_censored" in row,
                 "cell": cell(entries[f"table3.{name}.hours"]),
+                "then": viscosities[name],
             }
         )
     return columns

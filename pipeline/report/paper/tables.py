@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import re
 
+from pipeline.core.present import readable_record, scale_of
 from pipeline.core.properties import REFERENCE_AGE
 from pipeline.core.records import Condition
 from pipeline.core.units import to_si
@@ -13,7 +15,7 @@ from pipeline.report.paper import printed
 from pipeline.report.paper.entry import Entry
 from pipeline.report.paper.lookup import ask, material_entry, missing, of_record
 
-HANDLING = "handling_time"
+HANDLING, VISCOSITY_THEN = "handling_time", "viscosity_at_handling_time"
 ROOM_C = (22.0, 3.0)  # of the article, and how far an unheated bed may be from it
 
 # row of Table 4 -> property key and conditions
@@ -43,6 +45,36 @@ def table3(database: Database) -> list[Entry]:
     return [_handling(database, name) for name in printed.part("table3")]
 
 
+def viscosity_then(database: Database, name: str) -> tuple[str, str]:
+    """Say which viscosity a column of Table 3 had at its handling time, and the caveat or why not.
+
+    Returns
+    -------
+    text : value with its interval and shear rate, empty where there is none
+    note : the caveat beside it, or the reason
+    """
+    material, bed_C = run_of(name)
+
+    def question(card: MaterialCard) -> tuple[str, str]:
+        where = _bed(card, bed_C)
+        record = card.record(VISCOSITY_THEN, **where)
+        high = record.ci95[1]
+        text = readable_record(record)
+        if math.isfinite(high):
+            text += f", to {scale_of(record.quantity).with_number(high)}"
+        if "rate_per_s" in record.conditions:
+            text += f" at {record.conditions['rate_per_s']:.3g} 1/s"
+        return text, "; ".join(flag.detail for flag in record.flags)
+
+    found = ask(database, material, question)
+    return ("", found) if isinstance(found, str) else found
+
+
+def _bed(card: MaterialCard, bed_C: float | None) -> dict[str, Condition | None]:
+    """Conditions of the record that was printed on this bed, None for one at room temperature."""
+    return _unheated(card) if bed_C is None else {"temperature_K": to_si(bed_C, "C")}
+
+
 def run_of(name: str) -> tuple[str, float | None]:
     """Part a column of Table 3 into material and bed temperature `[degree Celsius]`."""
     heated = _BED.fullmatch(name)
@@ -54,11 +86,7 @@ def _handling(database: Database, name: str) -> Entry:
     material, bed_C = run_of(name)
 
     def question(card: MaterialCard) -> Entry:
-        if bed_C is not None:
-            where: dict[str, Condition | None] = {"temperature_K": to_si(bed_C, "C")}
-        else:
-            where = _unheated(card)
-        return of_record(path, card, card.record(HANDLING, **where))
+        return of_record(path, card, card.record(HANDLING, **_bed(card, bed_C)))
 
     found = ask(database, material, question)
     if isinstance(found, str):

@@ -17,7 +17,7 @@ from pipeline.report.paper.entry import CORRECTED, Entry, to_json
 from pipeline.report.paper.laws import Reading, is_fluid, reading, table2
 from pipeline.report.paper.material_figures import material_figures
 from pipeline.report.paper.page import Picture, render
-from pipeline.report.paper.tables import table3, table4
+from pipeline.report.paper.tables import table3, table4, viscosity_then
 
 FOLDER = "paper"
 _INPUTS = {
@@ -99,7 +99,8 @@ def _write(database: Database, folder: Path) -> list[Entry]:
     by_id = {entry.id: entry for entry in entries}
     readings = {m: reading(database, m) for m in printed.part("table2") if is_fluid(m)}
     pictures = _draw(database, folder, by_id, readings)
-    page = render(by_id, pictures, discrepancies(list(readings.values())))
+    viscosities = {name: viscosity_then(database, name) for name in printed.part("table3")}
+    page = render(by_id, pictures, discrepancies(list(readings.values())), viscosities)
     write_atomically(folder / "index.html", page)
     write_atomically(folder / "paper.json", to_json(entries))
     return entries

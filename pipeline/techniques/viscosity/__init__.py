@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from pipeline.core.errors import FitRefused
 from pipeline.core.records import (
@@ -129,11 +130,21 @@ def summarise(measurements: Sequence[Measurement], context: Context) -> Summary:
         return Summary(summary.records, (), (*summary.refusals, refused))
     origins = next((r.origins for r in summary.records if r.key == VISCOSITY), ())
     method = windows[0].rule
+    law = replace(law, diagnostics={**law.diagnostics, **_temperature(runs)})
     return Summary(
         summary.records, laws_of(law, levels, specimen, method, origins), summary.refusals
     )
 
 
+def _temperature(runs: Sequence[Measurement]) -> dict[str, float]:
+    """Mean temperature of the runs, where the register tells it of all of them `[K]`."""
+    stated = [m.specimen.numbers[_TEMPERATURE] for m in runs if _TEMPERATURE in m.specimen.numbers]
+    if len(stated) < len(runs):
+        return {}
+    return {_TEMPERATURE: sum(t.value for t in stated) / len(stated)}
+
+
+_TEMPERATURE = "temperature_K"
 # Refused by name where a run gives nothing; the others are only asked of some liquids.
 _ALWAYS = (VISCOSITY, DOUBLING)
 
