@@ -1,8 +1,12 @@
 from __future__ import annotations
 
+from typing import Any
+
+import pytest
+
 from pipeline.core.records import Flag
 from pipeline.materials.card import MaterialCard
-from pipeline.materials.present import card_text
+from pipeline.materials.present import card_text, law_text
 from tests.materials.samples import CREDIT, TWIN, card, modulus, refusal, viscosity_law
 
 
@@ -78,3 +82,29 @@ def test_a_card_of_refusals_alone() -> None:
 def test_a_falling_law_reads_as_people_write_it() -> None:
     law = viscosity_law(coefficients=(4.36, -0.13, 2.0), covariance=((0.0,) * 3,) * 3, flags=())
     assert "polynomial, 4.36 - 0.13 x + 2 x^2 [Pa.s]" in card_text(card(laws=(law,)))
+
+
+@pytest.mark.parametrize(
+    ("kind", "coefficients", "more", "text"),
+    [
+        ("exponential", (2.0, 1e-4), {}, "exponential, 2 exp(0.0001 x) [Pa.s]"),
+        (
+            "power-law-to-gel", (2.0, 5e4, 1.2), {},
+            "power-law-to-gel, 2 (1 - x / 5e+04)^-1.2 [Pa.s]",
+        ),
+        (
+            "power-law-fluid", (100.0, 0.5, 0.4), {"parts": (2, 1), "rates": (0.027, 0.27)},
+            "power-law-fluid, K q^(n - 1), K = 100 + 0.5 x, n = 0.4 [Pa.s]",
+        ),
+    ],
+)  # fmt: skip
+def test_every_form_of_a_law_is_written_as_it_is(
+    kind: str, coefficients: tuple[float, ...], more: dict[str, Any], text: str
+) -> None:
+    size = len(coefficients)
+    law = viscosity_law(
+        kind=kind, coefficients=coefficients, covariance=((0.0,) * size,) * size, flags=(), **more
+    )
+    written = law_text(law)
+    assert written.startswith(text)
+    assert written.endswith("at nominal shear rates q from 0.027 to 0.27 1/s") == bool(more)
