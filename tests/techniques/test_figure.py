@@ -73,3 +73,16 @@ def test_viscosity_shows_every_reading_and_the_law_over_its_range() -> None:
     assert law[1] == pytest.approx(4.0 + 0.19 * law[0])
     assert axes.spans == [(1.0, 12.0)]
     assert axes.labels == {"x": "time since mixing [h]", "y": "viscosity [Pa.s]"}
+
+
+def test_a_cure_over_decades_is_drawn_in_logarithms_with_its_law() -> None:
+    hours = np.arange(0.25, 13.01, 0.25)
+    cure = 0.5 * np.exp(hours / 2.0)
+    curve = {"time_s": hours * runs.HOUR, "viscosity_Pas": cure}
+    measured = runs.reduce(curve)
+    axes = Axes()
+    draw(axes, [measured], viscosity.summarise([measured], runs.CONTEXT))
+    readings, law = axes.lines
+    assert readings[1] == pytest.approx(np.log10(cure))
+    assert law[1] == pytest.approx(np.log10(0.5 * np.exp(law[0] / 2.0)), abs=1e-3)
+    assert axes.labels["y"] == "log10 of viscosity [Pa.s]"
