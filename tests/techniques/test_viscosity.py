@@ -17,6 +17,7 @@ from pipeline.formats.detect import detect
 from pipeline.formats.rawfile import RawFile
 from pipeline.techniques import viscosity
 from pipeline.techniques.viscosity.config import ViscosityConfig
+from pipeline.techniques.viscosity.time_law import drift_of
 from tests.techniques.runs import CONTEXT, HOUR, MACHINE, newtonian, recording, reduce, specimen
 
 TIMES = np.arange(0.25, 13.01, 0.25) * HOUR
@@ -60,6 +61,15 @@ def test_what_lies_outside_the_window_is_shown_and_not_fitted() -> None:
     measured = reduce(newtonian(odd, TIMES, seed=None))
     assert value(measured, "viscosity", 12.0) == pytest.approx(4 + 0.19 * 12, rel=1e-9)
     assert len(measured.curve["time_s"]) == len(TIMES)
+
+
+def test_a_law_that_meets_every_reading_exactly_still_moves_with_the_calibration() -> None:
+    slopes = np.stack([np.ones_like(TIMES), TIMES], axis=1)
+    sigma, shift = np.full(len(TIMES), 0.03), np.full(len(TIMES), 0.025)
+    covariance = np.linalg.inv(slopes.T @ slopes / 0.03**2)
+    for variance in (4.0, 0.0):
+        moved = drift_of(variance * covariance, variance, slopes, sigma, shift)
+        assert moved == pytest.approx([0.025, 0.0], rel=1e-9, abs=1e-15)
 
 
 def test_a_law_refuses_to_answer_outside_its_range() -> None:
