@@ -64,9 +64,9 @@ def test_what_lies_outside_the_window_is_shown_and_not_fitted() -> None:
 
 
 def test_a_law_that_meets_every_reading_exactly_still_moves_with_the_calibration() -> None:
-    slopes = np.stack([np.ones_like(TIMES), TIMES], axis=1)
+    slopes = np.stack([np.ones_like(TIMES), TIMES], axis=1).astype(np.float64)
     sigma, shift = np.full(len(TIMES), 0.03), np.full(len(TIMES), 0.025)
-    covariance = np.linalg.inv(slopes.T @ slopes / 0.03**2)
+    covariance = np.linalg.inv(slopes.T @ slopes / 0.03**2).astype(np.float64)
     for variance in (4.0, 0.0):
         moved = drift_of(variance * covariance, variance, slopes, sigma, shift)
         assert moved == pytest.approx([0.025, 0.0], rel=1e-9, abs=1e-15)
