@@ -53,6 +53,8 @@ def truth_of(record: PropertyRecord, table: Mapping[Place, float]) -> float:
     ------
     MissingProperty : nobody has said what it is
     """
+    if record.key == "viscosity_at_handling_time":
+        return _when_handled(record, table)
     if record.key in _OF_LIQUIDS:
         return _of_liquid(true_viscosities()[record.material], record.key, record.conditions)
     bed = record.conditions.get("temperature_K")
@@ -64,6 +66,12 @@ def truth_of(record: PropertyRecord, table: Mapping[Place, float]) -> float:
             f"the twin tells no truth of {record.key} of {record.material} "
             f"({dict(record.conditions)}); let its part state one"
         ) from None
+
+
+def _when_handled(record: PropertyRecord, table: Mapping[Place, float]) -> float:
+    bed, rate = record.conditions["temperature_K"], record.conditions.get("rate_per_s", 1.0)
+    time_s = table["handling_time", record.material, None, bed]
+    return viscosity_at(true_viscosities()[record.material], time_s, float(str(rate)))
 
 
 def _of_liquid(law: TrueViscosity, key: str, conditions: Mapping[str, Condition]) -> float:

@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from benchmarks.coverage_truth import truth_of, viscosity_at
-from pipeline.core.records import Law, Recording, Source, Specimen
+from pipeline.core.records import FloatArray, Law, Recording, Source, Specimen
 from pipeline.core.technique import Context
 from pipeline.techniques import viscosity
 from pipeline.techniques.viscosity.config import ViscosityConfig

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
 from pipeline.core.errors import FitRefused
 from pipeline.core.quantity import Contribution
@@ -34,9 +35,9 @@ def viscosity_then(
 
     Returns
     -------
-    a record whose value is the viscosity at the last clean line and whose interval ends with that
-    at the first defective one (its 95 % limit), at the middle of the shear rates of the law
-    `[Pa.s]`; or why there is none
+    a record that reaches from the viscosity at the last clean line to that at the first defective
+    one, each its outer 95 % limit, at the middle of the shear rates of the law `[Pa.s]`; or why
+    there is none
     """
     try:
         law = _law(handling, laws, tolerance_K)
@@ -77,10 +78,11 @@ def _record(handling: PropertyRecord, law: Law) -> PropertyRecord:
         )
     rate = law.usual_rate
     then = law(first, rate)
+    start = law.ci95(first, rate)[0]
     flags = [CAVEAT]
     end = math.inf
     if last <= high:
-        end = max(law.ci95(last, rate)[1], then.value)
+        end = max(law.ci95(last, rate)[1], start)
     elif math.isfinite(last):
         flags.append(
             Flag(
@@ -97,13 +99,13 @@ def _record(handling: PropertyRecord, law: Law) -> PropertyRecord:
         key=KEY,
         material=handling.material,
         campaign=handling.campaign,
-        quantity=then,
+        quantity=replace(then, value=start),
         n=handling.n,
         sd=None,
-        ci95=(then.value, end),
+        ci95=(start, end),
         conditions=conditions,
         method=f"law of viscosity ({law.kind}){where}, from the last clean line "
-        "to the first defective one"
+        "to the first defective one, 95 % limits"
         + ("" if math.isfinite(end) else ", which was not seen within the law"),
         budget=(Contribution("law of viscosity", then.standard_uncertainty, shared=False),),
         origins=law.origins,

@@ -115,7 +115,8 @@ def laws_of(
 
     The covariance has the scatter about the law, the scatter of the levels of the runs over the
     root of their number, and the calibration; its degrees of freedom are the fewest anywhere in
-    the range.
+    the range. A level multiplies viscosity, so it says nothing of n: the index has those of the
+    scatter alone.
     """
     covariance, dof = _whole_covariance(law, levels)
     whole = Law(
@@ -148,12 +149,12 @@ def laws_of(
     split = law.parts[0]
     return (
         whole,
-        _part(whole, CONSISTENCY, covariance, slice(0, split)),
-        _part(whole, INDEX, covariance, slice(split, None)),
+        _part(whole, CONSISTENCY, covariance, slice(0, split), dof),
+        _part(whole, INDEX, covariance, slice(split, None), float(law.dof)),
     )
 
 
-def _part(whole: Law, key: str, covariance: FloatArray, part: slice) -> Law:
+def _part(whole: Law, key: str, covariance: FloatArray, part: slice, dof: float) -> Law:
     """Take K or n out of a power-law fluid as a polynomial in time."""
     return replace(
         whole,
@@ -165,6 +166,7 @@ def _part(whole: Law, key: str, covariance: FloatArray, part: slice) -> Law:
         diagnostics={},
         parts=(),
         rates=None,
+        degrees_of_freedom=dof,
     )
 
 
