@@ -11,7 +11,7 @@ from pipeline.core.instruments import Machine
 from pipeline.core.quantity import Quantity
 from pipeline.core.records import FloatArray, Measurement, Recording, Specimen
 from pipeline.core.technique import Context
-from pipeline.techniques.nanoindentation import TECHNIQUE
+from pipeline.techniques.nanoindentation import MODULUS, TECHNIQUE
 from pipeline.twin.nanoindentation import simulate_nanoindentation, tip_of
 from tests.techniques.curves import EXACT, lengths, source
 
@@ -84,3 +84,25 @@ def twin(seed: int, material: str, number: int) -> tuple[Measurement, float]:
     context = Context(TECHNIQUE.config(), Machine(max_travel_m=TRAVEL_M), {})
     measured = TECHNIQUE.reduce(made, recording(test.displacement_m, test.force_N), context)
     return measured, test.truth["indentation_modulus"]
+
+
+MODULUS_Pa = 1e6
+CONTEXT = Context(TECHNIQUE.config(), EXACT, {})
+FLAT_CURVE = elastic(*law(MODULUS_Pa, "flat", 50e-6), 1e-6)
+SPHERE_CURVE = elastic(*law(MODULUS_Pa, "spherical", 150e-6), 4e-6)
+
+
+def flags(measurement: Measurement) -> list[str]:
+    return [str(flag) for flag in measurement.values[0].flags]
+
+
+def reason(measurement: Measurement) -> str:
+    (refusal,) = measurement.refusals
+    assert measurement.values == ()
+    assert (refusal.key, refusal.material, refusal.specimen) == (MODULUS, "m", "n2")
+    return refusal.reason
+
+
+def noisy(curve: tuple[FloatArray, FloatArray], sd_N: float) -> tuple[FloatArray, FloatArray]:
+    depth, force = curve
+    return depth, force + np.random.default_rng(0).normal(0.0, sd_N, force.size)
