@@ -49,7 +49,7 @@ from pipeline.techniques._stress_strain_figure import draw_curves
 MODULUS = "tensile_modulus"
 STRENGTH = "tensile_strength"
 ELONGATION = "elongation_at_break"
-VERSION = 1
+VERSION = 2
 
 
 class TensionConfig(CurveConfig):
