@@ -20,6 +20,7 @@ Verdict = Literal["within", "flagged", "refused", "SILENTLY WRONG"]
 
 SILENT_LIMIT = 0.10  # twice what a 95 % interval may miss
 MOSTLY = 0.5  # of the samples
+_CLEARLY = 0.2  # silently wrong beyond any doubt
 
 Draw = Callable[[np.random.Generator, int], tuple[Any, FloatArray]]
 
@@ -145,17 +146,30 @@ def cells_of(estimator: Estimator, samples: int = 0, reduced: bool = False) -> l
             )
         for n in sizes:
             for setting, draw in settings:
-                made += _simulate(
+                made += _confirmed(
                     estimator, failure.name, n, setting, draw, samples or estimator.samples
                 )
     return made
 
 
-def _simulate(
+def _confirmed(
     estimator: Estimator, failure: str, n: int, setting: str, draw: Draw, samples: int
 ) -> list[Cell]:
+    """Simulate a cell; if it is narrowly silently wrong, judge it by fresh numbers, more of them.
+
+    Of a thousand sound cells a few are beyond any limit by chance.
+    """
+    first = _simulate(estimator, failure, n, setting, draw, samples, "")
+    if any(c.verdict == "SILENTLY WRONG" and c.silent < _CLEARLY for c in first):
+        return _simulate(estimator, failure, n, setting, draw, 3 * samples, " again")
+    return first
+
+
+def _simulate(
+    estimator: Estimator, failure: str, n: int, setting: str, draw: Draw, samples: int, seed: str
+) -> list[Cell]:
     """Simulate one cell for all questions, all settings of a failure from the same numbers."""
-    name = f"{estimator.key}/{failure}/{n}"
+    name = f"{estimator.key}/{failure}/{n}{seed}"
     rng = np.random.default_rng(zlib.crc32(name.encode()))
     drawn = [draw(rng, n) for _ in range(samples)]
     told = estimator.ask([sample for sample, _ in drawn])

@@ -70,6 +70,7 @@ _KNOWN: dict[tuple[str, str], tuple[str, tuple[str, ...]]] = {
         ),
         ("1 %",),
     ),
+    ("nonlinear model", "values at half"): (_MAJORITY, ("30 %",)),
     ("linear model", "values at half"): (_MAJORITY, ("30 %",)),
     ("mean", "lognormal"): (
         "a few specimens do not show skew; no value is extreme yet",
