@@ -17,6 +17,12 @@ GRADIENT_LIMIT = 1e-6
 _JACOBIAN_LIMIT = 0.01
 _TOLERANCE = 1e-15
 _MOST_STEPS = 30
+# Plain steps, halved at most so often, must lower the squares by this part of what the tangent
+# promises; where the gradient is this part of the residuals, Newton steps take over.
+_KEPT = 0.5
+_MOST_HALVINGS = 4
+_NEAR = 1e-7
+_PLAIN_STEPS = 12
 _EPSILON = float(np.finfo(np.float64).eps)
 
 
@@ -78,19 +84,22 @@ class Minimum:
         return 0.5 * float(self.residuals @ self.residuals)
 
 
+def check_start(problem: Problem, start: FloatArray) -> None:
+    """Refuse a start outside the bounds or without finite values."""
+    if np.any(start <= problem.lower) or np.any(start >= problem.upper):
+        raise FitRefused(f"the start {_told(start)} does not lie inside the bounds")
+    if not np.isfinite(problem.residuals(start)).all():
+        raise FitRefused(f"the model is not finite at the start {_told(start)}")
+
+
 def descend(problem: Problem, start: FloatArray, evaluations: int) -> FloatArray:
     """Search by trust-region reflective steps, scaled by the Jacobian; shape (p,).
 
     Raises
     ------
-    FitRefused : a start outside the bounds or without finite values, or no convergence
+    FitRefused : no convergence, or a minimum on a bound
     """
     from scipy.optimize import least_squares
-
-    if np.any(start <= problem.lower) or np.any(start >= problem.upper):
-        raise FitRefused(f"the start {_told(start)} does not lie inside the bounds")
-    if not np.isfinite(problem.residuals(start)).all():
-        raise FitRefused(f"the model is not finite at the start {_told(start)}")
 
     def excess(b: FloatArray) -> FloatArray:
         return -problem.residuals(b)
@@ -120,6 +129,66 @@ def descend(problem: Problem, start: FloatArray, evaluations: int) -> FloatArray
             {"parameter": which, "bound": float(found.x[which])},
         )
     return np.asarray(found.x, dtype=np.float64)
+
+
+def walk(
+    problem: Problem, start: FloatArray, arrived: Callable[[FloatArray], bool] = lambda _: False
+) -> FloatArray | None:
+    """Go by Gauss-Newton steps where the model is near its tangent; shape (p,).
+
+    Normal equations will do for a search: they are a tenth of the time of `descend`. Where halved
+    steps do not keep what the tangent promises, or leave the bounds, it gives None.
+
+    Parameters
+    ----------
+    arrived : residuals to whether there is no need to go on, shape (n,) to bool
+    """
+    b, residuals = start, problem.residuals(start)
+    floor = (_EPSILON * float(np.linalg.norm(problem.y / problem.sigma))) ** 2
+    for _ in range(_PLAIN_STEPS):
+        if arrived(residuals):
+            return b
+        try:
+            step, promised = _tangent_step(problem.weighted_jacobian(b), residuals)
+        except (FitRefused, np.linalg.LinAlgError):
+            return None
+        if not promised >= 0.0:
+            return None
+        if promised <= _NEAR**2 * float(residuals @ residuals) + floor:
+            return b
+        moved = _kept_step(problem, b, residuals, step, promised)
+        if moved is None:
+            return None
+        b, residuals = moved
+    return None
+
+
+def _tangent_step(jacobian: FloatArray, residuals: FloatArray) -> tuple[FloatArray, float]:
+    """Give the step to the lowest point of the tangent, and the fall of the squares there."""
+    normal = jacobian.T @ jacobian
+    lengths = np.sqrt(normal.diagonal())
+    if not np.all(lengths > 0):
+        raise np.linalg.LinAlgError("a column of zeros")
+    gradient = jacobian.T @ residuals / lengths
+    step = np.linalg.solve(normal / np.outer(lengths, lengths), gradient)
+    return step / lengths, float(gradient @ step)
+
+
+def _kept_step(
+    problem: Problem, b: FloatArray, residuals: FloatArray, step: FloatArray, promised: float
+) -> tuple[FloatArray, FloatArray] | None:
+    """Take the longest of the halved steps that keeps its promise, with the residuals there."""
+    squares = float(residuals @ residuals)
+    for part in 0.5 ** np.arange(_MOST_HALVINGS + 1):
+        moved = b + part * step
+        if np.any(moved <= problem.lower) or np.any(moved >= problem.upper):
+            continue
+        beyond = problem.residuals(moved)
+        with np.errstate(over="ignore"):
+            fall = squares - float(beyond @ beyond)
+        if fall >= _KEPT * part * (2.0 - part) * promised:
+            return moved, beyond
+    return None
 
 
 def polish(problem: Problem, b: FloatArray) -> Minimum:
@@ -207,8 +276,8 @@ def _hessian(problem: Problem, b: FloatArray, q: FloatArray, r: FloatArray) -> F
     noise = float(np.linalg.norm(problem.residuals(b))) / np.sqrt(n)
     size = float(np.linalg.norm(problem.y / problem.sigma)) / np.sqrt(n)
     length = max(1e-3 * noise, 1e-8 * size) or 1e-8
-    columns = []
-    for direction in np.linalg.solve(r, length * np.eye(p)).T:
+    columns = np.empty((p, p))
+    for k, direction in enumerate(np.linalg.solve(r, length * np.eye(p)).T):
         step = direction * _room(problem, b, direction)
         ahead, behind = _slope_beside(problem, b + step), _slope_beside(problem, b - step)
         expected = q @ (r @ step)
@@ -220,9 +289,9 @@ def _hessian(problem: Problem, b: FloatArray, q: FloatArray, r: FloatArray) -> F
                 f"{100 * wrong:.2g} %, at most {100 * _JACOBIAN_LIMIT:g} % is accepted",
                 {"difference": wrong},
             )
-        columns.append(np.linalg.solve(r.T, ahead[0] - behind[0]) / (2.0 * scale))
-    hessian = np.stack(columns, axis=1)
-    return 0.5 * (hessian + hessian.T)
+        columns[:, k] = (ahead[0] - behind[0]) / (2.0 * scale)
+    hessian = np.linalg.solve(r.T, columns)
+    return np.asarray(0.5 * (hessian + hessian.T))
 
 
 def _room(problem: Problem, b: FloatArray, direction: FloatArray) -> float:

@@ -18,7 +18,7 @@ from pipeline.estimators.checks import (
 )
 from pipeline.estimators.double_double import FloatArray
 from pipeline.estimators.fit import Fit, error_variance, weighted_residual_sd
-from pipeline.estimators.gauss_newton import Minimum, Problem, descend, polish
+from pipeline.estimators.gauss_newton import Minimum, Problem, check_start, descend, polish, walk
 
 # A second start confirms the first if its curve lies within this part of the residuals.
 _SAME = 1e-4
@@ -103,7 +103,7 @@ def fit_nonlinear(
     problem = Problem(
         model, jacobian, values, sizes, _bound(lower, p, -np.inf), _bound(upper, p, np.inf)
     )
-    best = polish(problem, descend(problem, first, _MOST_EVALUATIONS))
+    best = _first_minimum(problem, first)
     other = None if second_start is None else finite_array("second_start", second_start)
     if other is not None:
         same_length("second_start", other, p, "parameters")
@@ -138,6 +138,18 @@ def _bound(bound: ArrayLike | None, p: int, default: float) -> FloatArray:
     return values
 
 
+def _first_minimum(problem: Problem, start: FloatArray) -> Minimum:
+    """Go the short way where it leads to a minimum, else search."""
+    check_start(problem, start)
+    near = walk(problem, start)
+    if near is not None:
+        try:
+            return polish(problem, near)
+        except FitRefused:
+            pass  # the search says what is wrong, if it ends there too
+    return polish(problem, descend(problem, start, _MOST_EVALUATIONS))
+
+
 def _confirmed(
     problem: Problem, best: Minimum, second: FloatArray | None
 ) -> tuple[Minimum, int, int]:
@@ -147,10 +159,10 @@ def _confirmed(
         held, returned, elsewhere = best, 0, 0
         for start in [*given, *_beside(problem, held)]:
             try:
-                found = polish(problem, descend(problem, start, _CONFIRMING_EVALUATIONS))
+                found = _other_minimum(problem, start, held)
             except FitRefused:
                 continue  # where this start ends says nothing of the minimum in hand
-            if _same_curve(held, found):
+            if found is None:
                 returned += 1
                 continue
             elsewhere += 1
@@ -177,7 +189,23 @@ def _beside(problem: Problem, minimum: Minimum) -> list[FloatArray]:
     return starts
 
 
-def _same_curve(a: Minimum, b: Minimum) -> bool:
-    """Whether two minima predict the same, however the parameters may have changed places."""
-    noise = np.sqrt(2.0 * min(a.cost, b.cost))
-    return bool(np.linalg.norm(a.residuals - b.residuals) <= _SAME * noise + a.rounding)
+def _other_minimum(problem: Problem, start: FloatArray, held: Minimum) -> Minimum | None:
+    """Search from a start: another minimum, or None if it comes back to the curve in hand."""
+
+    def back(residuals: FloatArray) -> bool:
+        return _same_curve(held, residuals)
+
+    check_start(problem, start)
+    end = walk(problem, start, back)
+    if end is None:
+        end = descend(problem, start, _CONFIRMING_EVALUATIONS)
+    if back(problem.residuals(end)):
+        return None  # the minimum there is proved already
+    found = polish(problem, end)
+    return None if back(found.residuals) else found
+
+
+def _same_curve(held: Minimum, residuals: FloatArray) -> bool:
+    """Whether residuals are those of the minimum in hand, whatever the parameters are called."""
+    noise = np.sqrt(min(2.0 * held.cost, float(residuals @ residuals)))
+    return bool(np.linalg.norm(held.residuals - residuals) <= _SAME * noise + held.rounding)

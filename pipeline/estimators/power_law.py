@@ -13,7 +13,6 @@ from pipeline.core.errors import FitRefused, OutOfRange
 from pipeline.estimators.chebyshev_series import basis, lowest
 from pipeline.estimators.checks import finite_array, same_length
 from pipeline.estimators.double_double import FloatArray
-from pipeline.estimators.linear import fit_linear
 from pipeline.estimators.nonlinear import NonlinearFit, fit_nonlinear
 from pipeline.estimators.polynomial import half_width, middle, raw_from_chebyshev
 
@@ -183,11 +182,19 @@ _in_values: tuple[_Function, _Function] = (
 def _start(y: FloatArray, bases: list[FloatArray], logs: FloatArray) -> FloatArray:
     """Fit ln K and m linearly, then K to the exponential of ln K: near enough to start from."""
     split = bases[0].shape[1]
-    linear = fit_linear(np.concatenate([bases[0], bases[1] * logs[:, None]], axis=1), np.log(y))
-    factors = np.exp(bases[0] @ linear.parameters[:split])
-    start = fit_linear(bases[0], factors, sigma=factors).parameters
+    design = np.concatenate([bases[0], bases[1] * logs[:, None]], axis=1)
+    linear, _, rank, _ = np.linalg.lstsq(design, np.log(y))
+    if rank < design.shape[1]:
+        raise FitRefused(
+            f"the readings do not determine a factor of degree {split - 1} and an exponent of "
+            f"degree {bases[1].shape[1] - 1} in time: lower a degree, or measure several rates at "
+            "more times",
+            {"parameters": design.shape[1], "rank": int(rank)},
+        )
+    factors = np.exp(bases[0] @ linear[:split])
+    start = np.linalg.lstsq(bases[0] / factors[:, None], np.ones(len(y)))[0]
     if np.any(bases[0] @ start <= 0):
         # A polynomial that dips below zero between the factors: a constant never does.
         start = np.zeros(split)
         start[0] = float(np.exp(np.log(factors).mean()))
-    return np.concatenate([start, linear.parameters[split:]])
+    return np.concatenate([start, linear[split:]])
