@@ -17,10 +17,10 @@ GRADIENT_LIMIT = 1e-6
 _JACOBIAN_LIMIT = 0.01
 _TOLERANCE = 1e-15
 _MOST_STEPS = 30
-# Plain steps, halved at most so often, must lower the squares by this part of what the tangent
+# Plain steps, or these parts of them, must lower the squares by this part of what the tangent
 # promises; where the gradient is this part of the residuals, Newton steps take over.
 _KEPT = 0.5
-_MOST_HALVINGS = 4
+_PARTS = (1.0, 0.5, 0.25, 0.125, 0.0625)
 _NEAR = 1e-7
 _PLAIN_STEPS = 12
 _EPSILON = float(np.finfo(np.float64).eps)
@@ -57,6 +57,10 @@ class Problem:
             raise FitRefused(f"the Jacobian is not finite at {_told(b)}")
         return derivatives / self.sigma[:, None]
 
+    def holds(self, b: FloatArray) -> bool:
+        """Whether a point lies between the bounds."""
+        return bool((self.lower < b).all() and (b < self.upper).all())
+
     def inside(self, b: FloatArray) -> FloatArray:
         """Bring a point into the bounds, a little off them, as a search must start."""
         width = self.upper - self.lower
@@ -84,22 +88,20 @@ class Minimum:
         return 0.5 * float(self.residuals @ self.residuals)
 
 
-def check_start(problem: Problem, start: FloatArray) -> None:
-    """Refuse a start outside the bounds or without finite values."""
-    if np.any(start <= problem.lower) or np.any(start >= problem.upper):
-        raise FitRefused(f"the start {_told(start)} does not lie inside the bounds")
-    if not np.isfinite(problem.residuals(start)).all():
-        raise FitRefused(f"the model is not finite at the start {_told(start)}")
-
-
 def descend(problem: Problem, start: FloatArray, evaluations: int) -> FloatArray:
     """Search by trust-region reflective steps, scaled by the Jacobian; shape (p,).
 
     Raises
     ------
-    FitRefused : no convergence, or a minimum on a bound
+    FitRefused : a start outside the bounds or without finite values, no convergence, or a minimum
+        on a bound
     """
     from scipy.optimize import least_squares
+
+    if not problem.holds(start):
+        raise FitRefused(f"the start {_told(start)} does not lie inside the bounds")
+    if not np.isfinite(problem.residuals(start)).all():
+        raise FitRefused(f"the model is not finite at the start {_told(start)}")
 
     def excess(b: FloatArray) -> FloatArray:
         return -problem.residuals(b)
@@ -133,8 +135,8 @@ def descend(problem: Problem, start: FloatArray, evaluations: int) -> FloatArray
 
 def walk(
     problem: Problem, start: FloatArray, arrived: Callable[[FloatArray], bool] = lambda _: False
-) -> FloatArray | None:
-    """Go by Gauss-Newton steps where the model is near its tangent; shape (p,).
+) -> tuple[FloatArray, FloatArray] | None:
+    """Go by Gauss-Newton steps where the model is near its tangent.
 
     Normal equations will do for a search: they are a tenth of the time of `descend`. Where halved
     steps do not keep what the tangent promises, or leave the bounds, it gives None.
@@ -142,12 +144,18 @@ def walk(
     Parameters
     ----------
     arrived : residuals to whether there is no need to go on, shape (n,) to bool
+
+    Returns
+    -------
+    parameters, shape (p,), and residuals there, shape (n,)
     """
     b, residuals = start, problem.residuals(start)
+    if not (problem.holds(start) and np.isfinite(residuals).all()):
+        return None
     floor = (_EPSILON * float(np.linalg.norm(problem.y / problem.sigma))) ** 2
     for _ in range(_PLAIN_STEPS):
         if arrived(residuals):
-            return b
+            return b, residuals
         try:
             step, promised = _tangent_step(problem.weighted_jacobian(b), residuals)
         except (FitRefused, np.linalg.LinAlgError):
@@ -155,7 +163,7 @@ def walk(
         if not promised >= 0.0:
             return None
         if promised <= _NEAR**2 * float(residuals @ residuals) + floor:
-            return b
+            return b, residuals
         moved = _kept_step(problem, b, residuals, step, promised)
         if moved is None:
             return None
@@ -165,12 +173,14 @@ def walk(
 
 def _tangent_step(jacobian: FloatArray, residuals: FloatArray) -> tuple[FloatArray, float]:
     """Give the step to the lowest point of the tangent, and the fall of the squares there."""
-    normal = jacobian.T @ jacobian
-    lengths = np.sqrt(normal.diagonal())
-    if not np.all(lengths > 0):
-        raise np.linalg.LinAlgError("a column of zeros")
+    with np.errstate(over="ignore", invalid="ignore"):
+        normal = jacobian.T @ jacobian
+        lengths = np.sqrt(normal.diagonal())
+        scaled = normal / np.outer(lengths, lengths)
+    if not np.isfinite(scaled).all():
+        raise np.linalg.LinAlgError("columns of no length, or of too much")
     gradient = jacobian.T @ residuals / lengths
-    step = np.linalg.solve(normal / np.outer(lengths, lengths), gradient)
+    step = np.linalg.solve(scaled, gradient)
     return step / lengths, float(gradient @ step)
 
 
@@ -179,9 +189,9 @@ def _kept_step(
 ) -> tuple[FloatArray, FloatArray] | None:
     """Take the longest of the halved steps that keeps its promise, with the residuals there."""
     squares = float(residuals @ residuals)
-    for part in 0.5 ** np.arange(_MOST_HALVINGS + 1):
+    for part in _PARTS:
         moved = b + part * step
-        if np.any(moved <= problem.lower) or np.any(moved >= problem.upper):
+        if not problem.holds(moved):
             continue
         beyond = problem.residuals(moved)
         with np.errstate(over="ignore"):
@@ -200,8 +210,9 @@ def polish(problem: Problem, b: FloatArray) -> Minimum:
     ------
     FitRefused : rank-deficient Jacobian, a gradient that does not vanish, or no minimum
     """
-    q, r, condition = _factor(problem, b)
-    hessian = _hessian(problem, b, q, r)
+    q, r = np.linalg.qr(problem.weighted_jacobian(b))
+    _condition(b, r)
+    hessian = _hessian(problem, b, r)
     curvature = float(np.linalg.eigvalsh(hessian)[0])
     if not curvature > 0:
         raise FitRefused(
@@ -210,22 +221,25 @@ def polish(problem: Problem, b: FloatArray) -> Minimum:
         )
     residuals = problem.residuals(b)
     slope = q.T @ residuals
+    # A residual is not known better than the floats that it is the difference of.
+    floor = _EPSILON * float(np.linalg.norm(problem.y / problem.sigma))
     for _ in range(_MOST_STEPS):
+        if float(np.linalg.norm(slope)) <= floor:
+            break
         moved = b + np.linalg.solve(r, np.linalg.solve(hessian, slope))
-        if np.any(moved <= problem.lower) or np.any(moved >= problem.upper):
+        if not problem.holds(moved):
             break
         try:
-            moved_q, moved_r, moved_condition = _factor(problem, moved)
+            moved_q, moved_r = np.linalg.qr(problem.weighted_jacobian(moved))
         except FitRefused:
             break
         moved_residuals = problem.residuals(moved)
         moved_slope = moved_q.T @ moved_residuals
         if not np.linalg.norm(moved_slope) < np.linalg.norm(slope):
             break
-        b, q, r, condition = moved, moved_q, moved_r, moved_condition
+        b, q, r = moved, moved_q, moved_r
         residuals, slope = moved_residuals, moved_slope
-    # A residual is not known better than the floats that it is the difference of.
-    rounding = 64.0 * _EPSILON * float(np.linalg.norm(problem.y / problem.sigma))
+    rounding = 64.0 * floor
     size = float(np.linalg.norm(residuals))
     steepness = float(np.linalg.norm(slope))
     if steepness > GRADIENT_LIMIT * size + rounding:
@@ -240,17 +254,15 @@ def polish(problem: Problem, b: FloatArray) -> Minimum:
         q=q,
         r=r,
         r_inverse=np.asarray(np.linalg.solve(r, np.eye(len(b)))),
-        condition_number=condition,
+        condition_number=_condition(b, r),
         gradient=steepness / size if size > 0 else 0.0,
         curvature=curvature,
         rounding=rounding,
     )
 
 
-def _factor(problem: Problem, b: FloatArray) -> tuple[FloatArray, FloatArray, float]:
-    """QR of the weighted Jacobian and its scaled condition number, refused beyond the limit."""
-    derivatives = problem.weighted_jacobian(b)
-    q, r = np.linalg.qr(derivatives)
+def _condition(b: FloatArray, r: FloatArray) -> float:
+    """Scaled condition number of the weighted Jacobian at b, refused beyond the limit."""
     lengths = np.sqrt(np.square(r).sum(axis=0))
     if not np.all(lengths > 0):
         which = int(np.flatnonzero(~(lengths > 0))[0])
@@ -263,34 +275,40 @@ def _factor(problem: Problem, b: FloatArray) -> tuple[FloatArray, FloatArray, fl
             f"most {CONDITION_LIMIT:.0e} is accepted; the data do not determine all parameters",
             {"condition_number": condition, "limit": CONDITION_LIMIT},
         )
-    return q, r, condition
+    return condition
 
 
-def _hessian(problem: Problem, b: FloatArray, q: FloatArray, r: FloatArray) -> FloatArray:
-    """Hessian of half the squares in the metric of J^T J, by differences of the exact gradient.
+def _hessian(problem: Problem, b: FloatArray, r: FloatArray) -> FloatArray:
+    r"""Hessian of half the squares in the metric of J^T J, by differences of the exact Jacobian.
 
-    The steps change the prediction by a thousandth of the noise, or enough to rise above rounding.
-    The same steps show whether the Jacobian is the model's derivative.
+    $1 - R^{-T} (\sum_i r_i \nabla^2 f_i) R^{-1}$. The steps change the prediction by a thousandth
+    of the noise, or enough to rise above rounding, and show as well whether the Jacobian is the
+    model's derivative.
     """
     n, p = len(problem.y), len(b)
-    noise = float(np.linalg.norm(problem.residuals(b))) / np.sqrt(n)
+    residuals, derivatives = problem.residuals(b), problem.weighted_jacobian(b)
+    noise = float(np.linalg.norm(residuals)) / np.sqrt(n)
     size = float(np.linalg.norm(problem.y / problem.sigma)) / np.sqrt(n)
     length = max(1e-3 * noise, 1e-8 * size) or 1e-8
-    columns = np.empty((p, p))
+    bounded = bool(np.isfinite(problem.lower).any() or np.isfinite(problem.upper).any())
+    bends = np.empty((p, p))
     for k, direction in enumerate(np.linalg.solve(r, length * np.eye(p)).T):
-        step = direction * _room(problem, b, direction)
-        ahead, behind = _slope_beside(problem, b + step), _slope_beside(problem, b - step)
-        expected = q @ (r @ step)
-        scale = float(np.linalg.norm(expected))
-        wrong = float(np.linalg.norm(0.5 * (behind[1] - ahead[1]) - expected)) / scale
-        if wrong > _JACOBIAN_LIMIT:
+        part = _room(problem, b, direction) if bounded else 1.0
+        moved = b + part * direction
+        beyond = problem.residuals(moved)
+        if not np.isfinite(beyond).all():
+            raise FitRefused(f"the model is not finite at {_told(moved)}, beside the minimum")
+        slopes = problem.weighted_jacobian(moved)
+        expected = 0.5 * ((derivatives + slopes) @ (moved - b))
+        wrong = float(np.linalg.norm(residuals - beyond - expected)) / (part * length)
+        if not wrong <= _JACOBIAN_LIMIT:
             raise FitRefused(
                 f"the Jacobian is not the derivative of the model at {_told(b)}: they differ by "
                 f"{100 * wrong:.2g} %, at most {100 * _JACOBIAN_LIMIT:g} % is accepted",
                 {"difference": wrong},
             )
-        columns[:, k] = (ahead[0] - behind[0]) / (2.0 * scale)
-    hessian = np.linalg.solve(r.T, columns)
+        bends[:, k] = (slopes - derivatives).T @ residuals / (part * length)
+    hessian = np.eye(p) - np.linalg.solve(r.T, bends)
     return np.asarray(0.5 * (hessian + hessian.T))
 
 
@@ -299,14 +317,6 @@ def _room(problem: Problem, b: FloatArray, direction: FloatArray) -> float:
     nearest = np.minimum(problem.upper - b, b - problem.lower)
     moving = direction != 0
     return float(min(1.0, np.min(0.5 * nearest[moving] / np.abs(direction[moving]), initial=1.0)))
-
-
-def _slope_beside(problem: Problem, b: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Gradient of half the weighted squares, shape (p,), and the residuals, shape (n,)."""
-    residuals = problem.residuals(b)
-    if not np.isfinite(residuals).all():
-        raise FitRefused(f"the model is not finite at {_told(b)}, beside the minimum")
-    return -(problem.weighted_jacobian(b).T @ residuals), residuals
 
 
 def _told(b: FloatArray) -> str:

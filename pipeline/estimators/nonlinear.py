@@ -18,11 +18,11 @@ from pipeline.estimators.checks import (
 )
 from pipeline.estimators.double_double import FloatArray
 from pipeline.estimators.fit import Fit, error_variance, weighted_residual_sd
-from pipeline.estimators.gauss_newton import Minimum, Problem, check_start, descend, polish, walk
+from pipeline.estimators.gauss_newton import Minimum, Problem, descend, polish, walk
 
 # A second start confirms the first if its curve lies within this part of the residuals.
 _SAME = 1e-4
-_START_SHIFTS = (0.05, 0.2, 0.5, 1.0)
+_START_SHIFTS = (0.2, 0.5, 1.0, 0.05)
 _MOST_RESTARTS = 5
 _MOST_EVALUATIONS = 4000
 _CONFIRMING_EVALUATIONS = 500
@@ -68,6 +68,7 @@ def fit_nonlinear(
     lower: ArrayLike | None = None,
     upper: ArrayLike | None = None,
     second_start: ArrayLike | None = None,
+    confirmations: int = len(_START_SHIFTS),
 ) -> NonlinearFit:
     r"""Minimise $\sum_i ((y_i - f_i(b)) / \sigma_i)^2$ over lower < b < upper.
 
@@ -85,6 +86,8 @@ def fit_nonlinear(
     y, sigma, error_scale : as in `fit_linear`
     lower, upper : bounds, shape (p,) each; unbounded if not given
     second_start : a start of the caller's own for one more search, shape (p,)
+    confirmations : searches that come back, with none that ends elsewhere, after which no more
+        are made; all of them unless the model is known to have one minimum
 
     Raises
     ------
@@ -107,7 +110,7 @@ def fit_nonlinear(
     other = None if second_start is None else finite_array("second_start", second_start)
     if other is not None:
         same_length("second_start", other, p, "parameters")
-    best, returned, elsewhere = _confirmed(problem, best, other)
+    best, returned, elsewhere = _confirmed(problem, best, other, confirmations)
     residual_sd = weighted_residual_sd(best.residuals, dof)
     return NonlinearFit(
         parameters=best.parameters,
@@ -140,18 +143,17 @@ def _bound(bound: ArrayLike | None, p: int, default: float) -> FloatArray:
 
 def _first_minimum(problem: Problem, start: FloatArray) -> Minimum:
     """Go the short way where it leads to a minimum, else search."""
-    check_start(problem, start)
     near = walk(problem, start)
     if near is not None:
         try:
-            return polish(problem, near)
+            return polish(problem, near[0])
         except FitRefused:
             pass  # the search says what is wrong, if it ends there too
     return polish(problem, descend(problem, start, _MOST_EVALUATIONS))
 
 
 def _confirmed(
-    problem: Problem, best: Minimum, second: FloatArray | None
+    problem: Problem, best: Minimum, second: FloatArray | None, enough: int
 ) -> tuple[Minimum, int, int]:
     """Search from all over, move to what is lower, and count what came back or went elsewhere."""
     given = [] if second is None else [second]
@@ -164,6 +166,8 @@ def _confirmed(
                 continue  # where this start ends says nothing of the minimum in hand
             if found is None:
                 returned += 1
+                if returned >= enough and not elsewhere:
+                    break
                 continue
             elsewhere += 1
             if found.cost < best.cost:
@@ -195,13 +199,13 @@ def _other_minimum(problem: Problem, start: FloatArray, held: Minimum) -> Minimu
     def back(residuals: FloatArray) -> bool:
         return _same_curve(held, residuals)
 
-    check_start(problem, start)
-    end = walk(problem, start, back)
-    if end is None:
+    near = walk(problem, start, back)
+    if near is None:
         end = descend(problem, start, _CONFIRMING_EVALUATIONS)
-    if back(problem.residuals(end)):
+        near = end, problem.residuals(end)
+    if back(near[1]):
         return None  # the minimum there is proved already
-    found = polish(problem, end)
+    found = polish(problem, near[0])
     return None if back(found.residuals) else found
 
 

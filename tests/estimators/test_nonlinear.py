@@ -126,6 +126,13 @@ def test_a_lower_minimum_nearby_takes_the_place_of_the_first() -> None:
     assert fit.elsewhere > 0  # and says that there are others
 
 
+def test_one_confirmation_is_enough_only_where_nothing_ends_elsewhere() -> None:
+    once = fit_nonlinear(growth, growth_jacobian, [1.0, 1.0], Y, confirmations=1)
+    assert (once.returned, once.elsewhere) == (1, 0)
+    several = fit_nonlinear(wave, wave_jacobian, [1.5], WAVE, confirmations=1)
+    assert several.parameters[0] == pytest.approx(1.0, abs=1e-3)
+
+
 def test_a_second_start_of_the_caller_finds_what_the_first_misses() -> None:
     alone = fit_nonlinear(wave, wave_jacobian, [0.3], WAVE)
     assert alone.residual_sd > 0.1

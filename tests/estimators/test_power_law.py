@@ -8,6 +8,7 @@ from numpy.polynomial import polynomial
 from scipy import stats
 
 from pipeline.core.errors import FitRefused, OutOfRange
+from pipeline.estimators import power_law
 from pipeline.estimators.linear import fit_linear
 from pipeline.estimators.power_law import ErrorModel, fit_power_law
 
@@ -60,6 +61,23 @@ def test_intervals_cover_as_often_as_they_say(errors: ErrorModel) -> None:
     # 95 % of 60: +-2.8 % at one standard deviation.
     assert np.all(np.abs(np.mean(parameters, axis=0) - 0.95) < 0.085)
     assert abs(np.mean(values) - 0.95) < 0.085
+
+
+@pytest.mark.parametrize("errors", ["of reading", "of full scale"])
+def test_more_searches_find_nothing_lower(
+    errors: ErrorModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rng = np.random.default_rng(34)
+    for noise in (0.01, 0.03, 0.1):
+        for _ in range(8):
+            y = law(TIME, RATE) * np.exp(noise * rng.normal(size=len(TIME)))
+            monkeypatch.setattr(power_law, "_CONFIRMATIONS", 1)
+            once = fit_power_law(TIME, RATE, y, 3, 2, errors)
+            monkeypatch.setattr(power_law, "_CONFIRMATIONS", 4)
+            often = fit_power_law(TIME, RATE, y, 3, 2, errors)
+            assert once.fit.returned == 1
+            assert often.fit.returned > 1 and often.fit.elsewhere == 0
+            np.testing.assert_array_equal(once.factor, often.factor)
 
 
 def test_units_scale_the_factor_and_leave_the_exponent() -> None:
