@@ -5,8 +5,7 @@ PIP := $(BIN)/pip --disable-pip-version-check --quiet
 PYTHON ?= python3.11
 
 .DEFAULT_GOAL := help
-.PHONY: all paper test check bench help clean
-.PHONY: all test check bench chart stability docs help clean
+.PHONY: all paper test check bench chart stability docs help clean
 
 all: $(VENV)/.runtime  ## reprocess raw/ into processed/: read, fit, refuse, publish cards
 	@$(BIN)/deamat all
@@ -46,4 +45,4 @@ $(VENV)/.dev: $(VENV)/.runtime
 	@touch $@
 
 help:  ## print this chain
-	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "make %-9s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)

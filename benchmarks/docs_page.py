@@ -26,7 +26,8 @@ and all data in it are simulated. Times are processor time on one core and depen
 the ratios, taken in the same run on the same samples, are what to compare. An error is relative to
 the known truth; which one is drawn stands on the axis of each chart. A contender is on the front
 unless another is clearly faster (10 %) and as right, or clearly more right (2 %) and as fast.
-Batches are measured but compete with nobody.
+Batches are measured but compete with nobody. What is refused, or does not converge, is counted in a
+column of its own and enters no error.
 
 Speed of reading and fitting whole files: `make bench`. Where methods fail: the maps in
 [methods/](methods), drawn by `make stability`.
@@ -70,15 +71,17 @@ def _section(family: Family, rows: Sequence[Row]) -> str:
         "",
         family.why(rows),
         "",
-        "| contender | time of a fit | times the default's | error | times the default's | front |",
-        "|---|---|---|---|---|---|",
+        "| contender | time of a fit | times the default's | error | times the default's | "
+        "refused | front |",
+        "|---|---|---|---|---|---|---|",
     ]
     for row in rows:
         name = f"**{row['contender']}**" if row["kind"] == "default" else str(row["contender"])
         time_us, error = number(row, "us per fit"), number(row, family.error)
         lines.append(
             f"| {name} | {_time(time_us)} | {time_us / number(ours, 'us per fit'):.2g} | "
-            f"{error:.2g} | {error / number(ours, family.error):.2g} | {row['front']} |"
+            f"{error:.2g} | {error / number(ours, family.error):.2g} | "
+            f"{float(row.get('failed %', 0.0)):.0f} % | {row['front']} |"
         )
     return "\n".join([*lines, "", f"Error: {family.axis}.", ""])
 

@@ -110,7 +110,8 @@ def statistics(answers: FloatArray, truth: FloatArray) -> dict[str, float]:
     good = np.isfinite(asked[:, 0]).all(axis=1)
     if not good.any():
         return dict.fromkeys(("bias %", "rmse %", "coverage %", "interval error %"), math.nan)
-    value, low, high = asked[good].transpose(1, 0, 2)
+    value, *ends = asked[good].transpose(1, 0, 2)
+    low, high = np.minimum(*ends), np.maximum(*ends)  # a negative truth turns them about
     missed = np.maximum(low, 0.0) + np.maximum(-high, 0.0)
     score = (high - low) + 2.0 / _ALPHA * missed
     covered = (low <= 0.0) & (high >= 0.0)

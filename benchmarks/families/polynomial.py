@@ -75,8 +75,8 @@ def contenders() -> list[Contender[Series]]:
     found = [
         Contender("Chebyshev, double-double QR", _answers(_default), default=True),
         Contender("Chebyshev, plain QR", _answers(_chebyshev)),
-        Contender("scaled columns, QR", _answers(polynomial_rivals.scaled_qr)),
-        Contender("normal equations", _answers(_normal)),
+        Contender("raw Vandermonde, scaled QR", _answers(polynomial_rivals.scaled_qr)),
+        Contender("raw Vandermonde, normal equations", _answers(_normal)),
         Contender(_EXACT, _answers(polynomial_rivals.exact_rationals)),
         Contender("numpy.polyfit", _answers(polynomial_rivals.numpy_polyfit), outside=True),
         Contender("scipy curve_fit", _answers(_curve_fit), outside=True),

@@ -125,14 +125,16 @@ def _lmfit(sample: Readings) -> Answer:
 def _why(found: Sequence[Row]) -> str:
     ours, fast = default_of(found), named(found, "log-log, time by time")
     peer = named(found, "scipy curve_fit, weighted")
+    scaled = named(found, "scipy curve_fit, weighted, time scaled by hand")
     return (
         "The error of a viscometer is a part of its reading, and so the default fits logarithms: "
         f"RMSE {number(ours, 'rmse %'):.2f} %, coverage {number(ours, 'coverage %'):.1f} %. Lines "
         f"of logarithms are faster, but lose {number(fast, 'rmse %') / number(ours, 'rmse %'):.1f} "
         f"times as much. curve_fit with the same weights and a fair start is as right "
-        f"({number(peer, 'rmse %'):.2f} %) in {number(peer, 'us per fit') / 1e3:.1f} ms instead of "
-        f"{number(ours, 'us per fit') / 1e3:.1f}: the default spends the rest on searches from "
-        f"other starts that prove the minimum or refuse. A law is fitted once for a batch of hours."
+        f"({number(peer, 'rmse %'):.2f} %) in {number(peer, 'us per fit') / 1e3:.1f} ms, in "
+        f"{number(scaled, 'us per fit') / 1e3:.1f} if somebody scales time for it; the default "
+        f"needs neither start nor scale, {number(ours, 'us per fit') / 1e3:.1f} ms, and in these "
+        f"it comes back to its minimum from a second start, or refuses."
     )
 
 

@@ -15,7 +15,7 @@ from benchmarks.timing import Row
 from benchmarks.weibull import conditional_bounds
 from benchmarks.weibull import samples as draw
 from pipeline.core.records import FloatArray
-from pipeline.estimators.weibull import fit, fit_batch
+from pipeline.estimators.weibull import fit, fit_batch, solve_shape
 from pipeline.estimators.weibull_intervals import infer
 from pipeline.estimators.weibull_lines import iec_62539, rank_regression
 from pipeline.estimators.weibull_rivals import (
@@ -24,7 +24,8 @@ from pipeline.estimators.weibull_rivals import (
     likelihood_ratio_intervals,
     wald_intervals,
 )
-from pipeline.estimators.weibull_shape import unbiased_shape
+from pipeline.estimators.weibull_sample import log_samples
+from pipeline.estimators.weibull_shape import modified_ratio, unbiased_shape
 
 SCALE, SHAPE = 97.0, 8.0
 N_POINT, N_INTERVAL = 20, 5
@@ -34,6 +35,7 @@ _POINT_TRUTH = np.array([SCALE, B10])
 _INTERVAL_TRUTH = np.array([SHAPE, SCALE, B1])
 _LOG_HAZARD_B10 = float(np.log(-np.log(0.9)))
 
+_RATIO = modified_ratio(np.array([float(N_POINT)]))
 _INTERVAL_COLUMNS = ("coverage %", "interval error %")
 
 
@@ -92,6 +94,7 @@ def _points() -> list[Contender[FloatArray]]:
     found = [
         Contender("maximum likelihood", _point(lambda x: _pair(fit(x))), default=True),
         Contender("shape freed of bias (Ross)", _point(_ross)),
+        Contender("modified profile likelihood", _point(_modified_profile)),
         Contender("rank regression, x on y", _point(lambda x: _pair(rank_regression(x)))),
         Contender(
             "rank regression, y on x",
@@ -101,6 +104,9 @@ def _points() -> list[Contender[FloatArray]]:
         Contender("moments of ln x", _point(_moments)),
         Contender("scipy weibull_min.fit", _point(_scipy), outside=True),
     ]
+    if is_there("lmfit"):
+        lmfit = Contender("lmfit, distribution to ranks", _point(_lmfit), outside=True, every=4)
+        found.append(lmfit)
     peers = {"reliability": _reliability, "surpyval": _surpyval, "lifelines": _lifelines}
     found += [
         Contender(name, _point(peer), outside=True, every=100)
@@ -136,6 +142,11 @@ def _ross(x: FloatArray) -> tuple[float, float]:
     return fit(x).scale, unbiased_shape(x).value
 
 
+def _modified_profile(x: FloatArray) -> tuple[float, float]:
+    shape, _ = solve_shape(log_samples(x[None], np.ones((1, len(x)), dtype=bool)), _RATIO)
+    return float(np.mean(x**shape) ** (1.0 / shape)), float(shape[0])
+
+
 def _moments(x: FloatArray) -> tuple[float, float]:
     """Menon's estimates from mean and standard deviation of ln x."""
     logs = np.log(x)
@@ -148,6 +159,21 @@ def _scipy(x: FloatArray) -> tuple[float, float]:
 
     shape, _, scale = weibull_min.fit(x, floc=0)
     return float(scale), float(shape)
+
+
+def _lmfit(x: FloatArray) -> tuple[float, float]:
+    """Least squares of the distribution function to median ranks, as users of lmfit do it."""
+    from lmfit import Parameters, minimize
+
+    strengths = np.sort(x)
+    ranks = (np.arange(1, len(x) + 1) - 0.3) / (len(x) + 0.4)
+    start = Parameters()
+    start.add("scale", value=float(np.median(x)), min=0.0)
+    start.add("shape", value=5.0, min=0.0)
+    found = minimize(
+        lambda p: -np.expm1(-((strengths / p["scale"].value) ** p["shape"].value)) - ranks, start
+    )
+    return float(found.params["scale"].value), float(found.params["shape"].value)
 
 
 def _reliability(x: FloatArray) -> tuple[float, float]:
@@ -170,7 +196,7 @@ def _intervals() -> list[Contender[FloatArray]]:
     return [
         Contender("exact conditional", _conditional, default=True),
         Contender("Wald, log (R, SAS)", _rival_intervals(wald_intervals)),
-        Contender("likelihood ratio", _rival_intervals(likelihood_ratio_intervals)),
+        Contender("likelihood ratio", _rival_intervals(likelihood_ratio_intervals), every=4),
         Contender("bootstrap percentile", _rival_intervals(_bootstrap)),
     ]
 

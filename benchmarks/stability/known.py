@@ -13,7 +13,6 @@ _WEAK = (
 )
 _FORM = (
     "samples this small do not tell the forms apart (20 of a lognormal: one in five), and the "
-    "quantile lies below all of them; the card says `extrapolated`, as on sound samples too"
     "quantile lies below all of them; `extrapolated` says so, but stands on sound samples too"
 )
 _CORRELATED = (

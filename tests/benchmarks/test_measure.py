@@ -40,6 +40,14 @@ def test_statistics_are_relative_to_the_truth() -> None:
     assert told["interval error %"] == pytest.approx((30.0 + 15.0 + 200.0) / 2)
 
 
+def test_intervals_of_a_negative_truth_are_judged_alike() -> None:
+    answers = np.array([[[11.0], [9.0], [12.0]], [[9.0], [8.0], [9.5]]])
+    turned = -answers[:, [0, 2, 1]]
+    assert statistics(turned, np.full((2, 1), -10.0)) == pytest.approx(
+        statistics(answers, np.full((2, 1), 10.0))
+    )
+
+
 def test_refusals_are_counted_and_enter_nothing_else() -> None:
     def fit(x: float) -> Answer:
         if x < 0:
