@@ -1,9 +1,10 @@
 """Accuracy against speed of every estimator and its rivals, on the same simulated data in one run.
 
 `python -m benchmarks.chart` measures five families (slope, polynomial, power law, Weibull points
-and intervals), prints a table for each, and writes tables as CSV and JSON and one chart a family as
-SVG and PNG to `processed/benchmarks/`; `--docs` also writes `docs/benchmarks.md` and the pictures
-in `docs/methods/img/`. All data are simulated; nothing of it is a measurement.
+and intervals) and the ladder of actuator models, prints a table for each, and writes tables as CSV
+and JSON and charts as SVG and PNG to `processed/benchmarks/`; `--docs` also writes
+`docs/benchmarks.md` and the pictures in `docs/methods/img/`. All data are simulated; nothing of it
+is a measurement.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
+from benchmarks import ladder
 from benchmarks.docs_page import copy_picture, write_page
 from benchmarks.families import polynomial, power_law, slope, weibull
 from benchmarks.families.family import Family, with_front
@@ -56,8 +58,12 @@ def main() -> None:
         if asked.docs:
             copy_picture(png)
         print(f"{svg}, {png.name}")
+    print("\nLadder of actuator models (simulated)")
+    rungs, limits, pictures = ladder.measure_and_draw(max(int(ladder.DESIGNS * asked.scale), 200))
     if asked.docs:
-        write_page(found, Path("docs/benchmarks.md"))
+        for picture in pictures:
+            copy_picture(picture)
+        write_page(found, rungs, limits, Path("docs/benchmarks.md"))
     print(f"\n{time.perf_counter() - start:.0f} s")
 
 

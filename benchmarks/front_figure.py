@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogFormatter, ScalarFormatter
+from matplotlib.transforms import ScaledTranslation
 
 from benchmarks.families.family import Family, number
 from benchmarks.timing import Row
@@ -30,6 +33,16 @@ _KINDS = {
     "own rival": (COLOURS[0], "o", "rival of our own"),
     "outside": (COLOURS[2], "s", "other package"),
 }
+_SIZE = 11.0  # of a marker, in points
+# Where a marker may go that lies on another one, in points: first nowhere, then ever farther.
+_BESIDE = (
+    (0.0, 0.0),
+    *(
+        (far * math.cos(turn), far * math.sin(turn))
+        for far in (14.0, 20.0, 28.0, 36.0, 46.0, 56.0)
+        for turn in (math.pi / 2, math.pi / 4, 0.75 * math.pi, 0.0, math.pi)
+    ),
+)
 _LINE_in = 0.16
 _CHARACTERS = 116
 
@@ -52,7 +65,7 @@ def draw_front(family: Family, rows: Sequence[Row], folder: Path) -> tuple[Path,
         bottom, tall = (foot_in + 0.45) / height_in, 2.5 / height_in
         axes = figure.add_axes((0.1, bottom, 0.46, tall))
         side = figure.add_axes((0.6, bottom, 0.39, tall))
-        _points(axes, family, rows)
+        _points(figure, axes, family, rows)
         _key(side, family, rows)
         set_title(figure, family.title)
         text = figure.text(0.008, 0.06 / figure.get_figheight(), "\n".join(under), va="bottom")
@@ -60,7 +73,7 @@ def draw_front(family: Family, rows: Sequence[Row], folder: Path) -> tuple[Path,
         return save_figure(figure, axes, folder, name, family.title, synthetic=True)
 
 
-def _points(axes: Axes, family: Family, rows: Sequence[Row]) -> None:
+def _points(figure: Figure, axes: Axes, family: Family, rows: Sequence[Row]) -> None:
     axes.set(xscale="log", yscale="log", xlabel="processor time of a fit [µs]", ylabel=family.axis)
     axes.yaxis.label.set_fontsize(8.0)
     chosen = [row for row in rows if row["front"] == "yes"]
@@ -72,26 +85,11 @@ def _points(axes: Axes, family: Family, rows: Sequence[Row]) -> None:
     # nobody is faster than the first, and nobody better than the last
     x, y = [times[0], *times, 3.0 * max(every)], [3.0 * worst, *errors, errors[-1]]
     axes.step(x, y, where="post", color="#666666", linewidth=1.0, linestyle=(0, (4, 2)), zorder=1)
-    for i, row in enumerate(rows, 1):
-        colour, marker, _ = _KINDS[str(row["kind"])]
-        place = (number(row, "us per fit"), number(row, family.error))
-        on_front = row["front"] == "yes"
-        face = colour if on_front else "white"
-        axes.plot(*place, marker, color=colour, markerfacecolor=face, markersize=10.5, zorder=3)
-        axes.annotate(
-            str(i),
-            place,
-            ha="center",
-            va="center_baseline",
-            fontsize=6.5,
-            fontweight="bold",
-            color="white" if on_front else colour,
-            zorder=4,
-        )
     low = min(e for row in rows if (e := number(row, family.error)) == e)
     margin = (worst / low) ** 0.08 * 1.15
     axes.set_ylim(low / margin, worst * margin)
     axes.set_xlim(min(every) / 1.8, 1.8 * max(every))
+    _markers(figure, axes, family, rows)
     if worst < 1e3 * low:
         axes.yaxis.set_major_formatter(ScalarFormatter())
         axes.yaxis.set_minor_formatter(LogFormatter(minor_thresholds=(2, 0.7)))
@@ -111,6 +109,41 @@ def _points(axes: Axes, family: Family, rows: Sequence[Row]) -> None:
         handletextpad=0.3,
         borderpad=0.0,
     )
+
+
+def _markers(figure: Figure, axes: Axes, family: Family, rows: Sequence[Row]) -> None:
+    """Draw numbered markers; one that would lie on another is moved beside it, with a leader."""
+    taken: list[tuple[float, float]] = []
+    to_points = 72.0 / figure.dpi
+    for i, row in enumerate(rows, 1):
+        colour, marker, _ = _KINDS[str(row["kind"])]
+        place = (number(row, "us per fit"), number(row, family.error))
+        if not np.isfinite(place).all():
+            continue
+        x, y = axes.transData.transform(place) * to_points
+        dx, dy = next(
+            (dx, dy)
+            for dx, dy in _BESIDE
+            if all(math.hypot(x + dx - a, y + dy - b) > _SIZE for a, b in taken)
+        )
+        taken.append((x + dx, y + dy))
+        on_front = row["front"] == "yes"
+        moved: dict[str, Any] = {"xy": place, "xytext": (dx, dy), "textcoords": "offset points"}
+        if dx or dy:
+            leader: dict[str, Any] = {"arrowstyle": "-", "color": colour, "linewidth": 0.8}
+            axes.annotate("", arrowprops=leader, zorder=2, **moved)
+        shift = ScaledTranslation(dx / 72.0, dy / 72.0, figure.dpi_scale_trans)
+        face = colour if on_front else "white"
+        style: dict[str, Any] = {
+            "color": colour,
+            "markerfacecolor": face,
+            "markersize": 10.5,
+            "zorder": 3,
+        }
+        axes.plot(*place, marker, transform=axes.transData + shift, **style)
+        ink = "white" if on_front else colour
+        weight: dict[str, Any] = {"fontsize": 6.5, "fontweight": "bold", "color": ink, "zorder": 4}
+        axes.annotate(str(i), ha="center", va="center_baseline", **moved, **weight)
 
 
 def _key(axes: Axes, family: Family, rows: Sequence[Row]) -> None:

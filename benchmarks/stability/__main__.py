@@ -39,9 +39,10 @@ def summary(cells: list[Cell]) -> list[Row]:
     return rows
 
 
-def _cells(number: int, samples: int) -> list[Cell]:
-    """Simulate one estimator of the list: its functions do not travel between processes."""
-    return cells_of(ESTIMATORS[number], samples)
+def _cells(number: int, failure: int, samples: int) -> list[Cell]:
+    """Simulate one failure of one estimator: by number, for functions do not travel."""
+    estimator = ESTIMATORS[number]
+    return cells_of(estimator, samples, failures=estimator.failures[failure : failure + 1])
 
 
 def main() -> None:
@@ -52,7 +53,11 @@ def main() -> None:
     asked = parser.parse_args()
     start = time.perf_counter()
     with ProcessPoolExecutor(max_workers=2) as pool:
-        jobs = [pool.submit(_cells, i, asked.samples) for i in range(len(ESTIMATORS))]
+        jobs = [
+            pool.submit(_cells, i, k, asked.samples)
+            for i, estimator in enumerate(ESTIMATORS)
+            for k in range(len(estimator.failures))
+        ]
         cells = [cell for job in jobs for cell in job.result()]
     for cell in cells:
         if cell.verdict == "SILENTLY WRONG":

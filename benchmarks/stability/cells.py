@@ -127,16 +127,22 @@ class Cell:
         }
 
 
-def cells_of(estimator: Estimator, samples: int = 0, reduced: bool = False) -> list[Cell]:
+def cells_of(
+    estimator: Estimator,
+    samples: int = 0,
+    reduced: bool = False,
+    failures: Sequence[Failure] | None = None,
+) -> list[Cell]:
     """Simulate an estimator's whole grid.
 
     Parameters
     ----------
+    failures : these only; all of the estimator's if not given
     samples : for each cell; those of the estimator if 0
     reduced : only the middle size and the first, middle and last setting of each failure
     """
     made: list[Cell] = []
-    for failure in estimator.failures:
+    for failure in estimator.failures if failures is None else failures:
         sizes = failure.sizes or estimator.sizes
         settings = failure.settings
         if reduced:

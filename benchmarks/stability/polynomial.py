@@ -174,7 +174,7 @@ GIVEN = Estimator(
     "polynomial",
 )
 CHOSEN = Estimator(
-    "polynomial of chosen order", _QUESTIONS, (12, 48), _ALIKE, _asking(_chosen), "selection", 100
+    "polynomial of chosen order", _QUESTIONS, (12, 48), _ALIKE, _asking(_chosen), "selection", 80
 )
 RISING = Estimator(
     "non-decreasing polynomial", _QUESTIONS, _SIZES, (*_ALIKE, _DEGREES), _rising, "polynomial", 100

@@ -8,6 +8,7 @@ Source: IEC 62539; Lawless, Statistical Models and Methods for Lifetime Data, ch
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -89,18 +90,18 @@ def fit(x: ArrayLike, censored: ArrayLike | None = None) -> WeibullFit:
         failures that differ by less than 1e-6 of the largest
     """
     values, failed = check_sample(x, censored)
-    scale, shape, log_likelihood = _maximise(
-        log_samples(values[None, :], None if failed.all() else failed[None, :])
-    )
-    if np.isnan(shape[0]):
+    complete = bool(failed.all())
+    fitted = _maximise(log_samples(values[None, :], None if complete else failed[None, :]))
+    scale, shape, log_likelihood = (part.item() for part in fitted)
+    if math.isnan(shape):
         raise FitRefused("the likelihood equation did not converge", {"n": values.size})
     return WeibullFit(
-        scale=float(scale[0]),
-        shape=float(shape[0]),
+        scale=scale,
+        shape=shape,
         n=values.size,
-        failures=int(failed.sum()),
-        log_likelihood=float(log_likelihood[0]),
-        censoring=censoring_of(values, failed),
+        failures=values.size if complete else int(failed.sum()),
+        log_likelihood=log_likelihood,
+        censoring="complete" if complete else censoring_of(values, failed),
         warnings=sample_warnings(values, failed),
     )
 
@@ -141,13 +142,8 @@ def _maximise(samples: LogSamples) -> tuple[FloatArray, FloatArray, FloatArray]:
     shape, log_sum = solve_shape(samples, np.ones_like(samples.failures))
     log_mean_power = log_sum - np.log(samples.failures)
     scale = samples.largest * np.exp(log_mean_power / shape)
-    per_failure = (
-        np.log(shape)
-        + (shape - 1.0) * samples.mean_failed
-        - np.log(samples.largest)
-        - log_mean_power
-        - 1.0
-    )
+    rest = np.log(shape) - np.log(samples.largest) - log_mean_power - 1.0
+    per_failure = (shape - 1.0) * samples.mean_failed + rest
     return scale, shape, samples.failures * per_failure
 
 

@@ -174,12 +174,9 @@ def sample_warnings(values: FloatArray, failed: BoolArray) -> Warnings:
             ("few_failures", f"{failures.size} failures; {FEW_FAILURES} are the usual least")
         )
     # ties alone do not hurt, and three specimens may lie far apart: only both together are coarse
-    step = float(np.diff(distinct).min() / failures.std(ddof=1))
-    if distinct.size < failures.size and step > COARSE_STEP:
-        found.append(
-            (
-                "coarse_rounding",
-                f"{distinct.size} distinct values in {failures.size} failures, {step:.2g} sd apart",
-            )
-        )
+    if distinct.size < failures.size:
+        step = float(np.diff(distinct).min() / failures.std(ddof=1))
+        if step > COARSE_STEP:
+            told = f"{distinct.size} distinct values in {failures.size} failures"
+            found.append(("coarse_rounding", f"{told}, {step:.2g} sd apart"))
     return tuple(found)
