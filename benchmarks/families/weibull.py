@@ -105,7 +105,7 @@ def _points() -> list[Contender[FloatArray]]:
         Contender("scipy weibull_min.fit", _point(_scipy), outside=True),
     ]
     if is_there("lmfit"):
-        lmfit = Contender("lmfit, distribution to ranks", _point(_lmfit), outside=True, every=4)
+        lmfit = Contender("lmfit, distribution to ranks", _point(_lmfit), outside=True)
         found.append(lmfit)
     peers = {"reliability": _reliability, "surpyval": _surpyval, "lifelines": _lifelines}
     found += [
@@ -201,7 +201,7 @@ def _intervals() -> list[Contender[FloatArray]]:
     return [
         Contender("exact conditional", _conditional, default=True),
         Contender("Wald, log (R, SAS)", _rival_intervals(wald_intervals)),
-        Contender("likelihood ratio", _rival_intervals(likelihood_ratio_intervals), every=4),
+        Contender("likelihood ratio", _rival_intervals(likelihood_ratio_intervals)),
         Contender("bootstrap percentile", _rival_intervals(_bootstrap)),
     ]
 

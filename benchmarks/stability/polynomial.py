@@ -172,10 +172,11 @@ GIVEN = Estimator(
     (*_ALIKE, _DEGREES),
     _asking(_given),
     "polynomial",
+    120,
 )
 CHOSEN = Estimator(
-    "polynomial of chosen order", _QUESTIONS, (12, 48), _ALIKE, _asking(_chosen), "selection", 80
+    "polynomial of chosen order", _QUESTIONS, (12, 48), _ALIKE, _asking(_chosen), "selection", 60
 )
 RISING = Estimator(
-    "non-decreasing polynomial", _QUESTIONS, _SIZES, (*_ALIKE, _DEGREES), _rising, "polynomial", 100
+    "non-decreasing polynomial", _QUESTIONS, _SIZES, (*_ALIKE, _DEGREES), _rising, "polynomial", 80
 )

@@ -170,7 +170,7 @@ NONLINEAR = Estimator(
     ),
     _ask_decay,
     "nonlinear",
-    80,
+    60,
 )
 
 Readings = tuple[FloatArray, FloatArray, FloatArray, float]  # t, q, y, time asked about
@@ -257,5 +257,5 @@ POWER_LAW = Estimator(
     ),
     _ask_power_law,
     "power_law",
-    80,
+    60,
 )

@@ -145,5 +145,5 @@ _FAILURES = (
     Failure("unit of field", tuple((f"{u:g}", _drawn(unit=u)) for u in _SCALES)),
 )
 ESTIMATOR = Estimator(
-    "Weibull", ("shape", "scale", "B10", "B1"), (5, 20, 100), _FAILURES, _ask, "weibull", 120
+    "Weibull", ("shape", "scale", "B10", "B1"), (5, 20, 100), _FAILURES, _ask, "weibull", 100
 )

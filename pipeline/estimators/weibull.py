@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -91,15 +92,19 @@ def fit(x: ArrayLike, censored: ArrayLike | None = None) -> WeibullFit:
     """
     values, failed = check_sample(x, censored)
     complete = bool(failed.all())
-    fitted = _maximise(log_samples(values[None, :], None if complete else failed[None, :]))
-    scale, shape, log_likelihood = (part.item() for part in fitted)
+    samples = log_samples(values[None, :], None if complete else failed[None, :])
+    shape, log_sum = (part.item() for part in solve_shape(samples, np.ones(1)))
     if math.isnan(shape):
         raise FitRefused("the likelihood equation did not converge", {"n": values.size})
+    failures, mean, largest = (
+        part.item() for part in (samples.failures, samples.mean_failed, samples.largest)
+    )
+    scale, log_likelihood = _scale_and_likelihood(math, shape, log_sum, failures, mean, largest)
     return WeibullFit(
         scale=scale,
         shape=shape,
         n=values.size,
-        failures=values.size if complete else int(failed.sum()),
+        failures=int(failures),
         log_likelihood=log_likelihood,
         censoring="complete" if complete else censoring_of(values, failed),
         warnings=sample_warnings(values, failed),
@@ -140,11 +145,28 @@ def fit_batch(x: ArrayLike, censored: ArrayLike | None = None) -> WeibullFits:
 
 def _maximise(samples: LogSamples) -> tuple[FloatArray, FloatArray, FloatArray]:
     shape, log_sum = solve_shape(samples, np.ones_like(samples.failures))
-    log_mean_power = log_sum - np.log(samples.failures)
-    scale = samples.largest * np.exp(log_mean_power / shape)
-    rest = np.log(shape) - np.log(samples.largest) - log_mean_power - 1.0
-    per_failure = (shape - 1.0) * samples.mean_failed + rest
-    return scale, shape, samples.failures * per_failure
+    scale, log_likelihood = _scale_and_likelihood(
+        np, shape, log_sum, samples.failures, samples.mean_failed, samples.largest
+    )
+    return scale, shape, log_likelihood
+
+
+def _scale_and_likelihood(
+    library: Any, shape: Any, log_sum: Any, failures: Any, mean_failed: Any, largest: Any
+) -> tuple[Any, Any]:
+    """Scale and log-likelihood at the shape; `math` does for one sample what numpy does for many.
+
+    For one sample arrays would take a tenth of the whole fit.
+    """
+    log_mean_power = log_sum - library.log(failures)
+    per_failure = (
+        library.log(shape)
+        + (shape - 1.0) * mean_failed
+        - library.log(largest)
+        - log_mean_power
+        - 1.0
+    )
+    return largest * library.exp(log_mean_power / shape), failures * per_failure
 
 
 def solve_shape(samples: LogSamples, ratio: FloatArray) -> tuple[FloatArray, FloatArray]:
