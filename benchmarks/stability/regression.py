@@ -246,7 +246,7 @@ POWER_LAW = Estimator(
         Failure("unit of time", tuple((f"{v:g}", _readings(time=v)) for v in _SCALES)),
         Failure("unit of viscosity", tuple((f"{v:g}", _readings(unit=v)) for v in _SCALES)),
         Failure(
-            "range of rates to the power",
+            "power on rate range",
             tuple((f"{v:g}", _readings(spread=v)) for v in (0.5, 0.1, 1e-2, 1e-4, 0)),
         ),
         Failure(
