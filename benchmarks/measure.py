@@ -21,8 +21,8 @@ Sample = TypeVar("Sample")
 
 _PARTS = 16  # contenders take turns this often, so that a drift of the machine hits all alike
 _ALPHA = 0.05
-# Relative differences that can be told: the same estimator timed twice in one run, under two names on
-# a busy machine, differs by up to 20 %; three to five standard errors of a ratio of errors are 2 %.
+# Relative differences that can be told: the same estimator timed twice in one run, under two names
+# on a busy machine, differs by up to 20 %; 2 % are four standard errors of the closest errors.
 _CLOCK, _SIMULATION = 0.2, 0.02
 
 
