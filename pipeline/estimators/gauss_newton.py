@@ -28,7 +28,10 @@ _EPSILON = float(np.finfo(np.float64).eps)
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """A model with its exact Jacobian, data and bounds; shapes as in `fit_nonlinear`."""
+    """A model with its exact Jacobian, data and bounds; shapes as in `fit_nonlinear`.
+
+    A search may try parameters where the model overflows: the caller mutes numpy's warnings.
+    """
 
     model: Callable[[FloatArray], FloatArray]
     jacobian: Callable[[FloatArray], FloatArray]
@@ -39,22 +42,25 @@ class Problem:
 
     def residuals(self, b: FloatArray) -> FloatArray:
         """Weighted residuals (y - f(b)) / sigma, shape (n,); infinite where f has no value."""
-        with np.errstate(all="ignore"):
-            predicted = np.asarray(self.model(b), dtype=np.float64)
+        predicted = np.asarray(self.model(b), dtype=np.float64)
         if predicted.shape != self.y.shape:
             raise FitRefused(f"the model gives shape {predicted.shape} for {len(self.y)} points")
         return (self.y - predicted) / self.sigma
 
     def weighted_jacobian(self, b: FloatArray) -> FloatArray:
-        """J / sigma, shape (n, p)."""
-        with np.errstate(all="ignore"):
-            derivatives = np.asarray(self.jacobian(b), dtype=np.float64)
+        """J / sigma, shape (n, p), finite."""
+        weighted = self.any_jacobian(b)
+        if not np.isfinite(weighted).all():
+            raise FitRefused(f"the Jacobian is not finite at {_told(b)}")
+        return weighted
+
+    def any_jacobian(self, b: FloatArray) -> FloatArray:
+        """J / sigma, shape (n, p), finite or not."""
+        derivatives = np.asarray(self.jacobian(b), dtype=np.float64)
         if derivatives.shape != (len(self.y), len(b)):
             raise FitRefused(
                 f"the Jacobian has shape {derivatives.shape}, not ({len(self.y)}, {len(b)})"
             )
-        if not np.isfinite(derivatives).all():
-            raise FitRefused(f"the Jacobian is not finite at {_told(b)}")
         return derivatives / self.sigma[:, None]
 
     def holds(self, b: FloatArray) -> bool:
@@ -106,19 +112,18 @@ def descend(problem: Problem, start: FloatArray, evaluations: int) -> FloatArray
     def excess(b: FloatArray) -> FloatArray:
         return -problem.residuals(b)
 
-    with np.errstate(all="ignore"):
-        found = least_squares(
-            excess,
-            start,
-            problem.weighted_jacobian,
-            bounds=(problem.lower, problem.upper),
-            method="trf",
-            x_scale="jac",
-            ftol=_TOLERANCE,
-            xtol=_TOLERANCE,
-            gtol=_TOLERANCE,
-            max_nfev=evaluations,
-        )
+    found = least_squares(
+        excess,
+        start,
+        problem.weighted_jacobian,
+        bounds=(problem.lower, problem.upper),
+        method="trf",
+        x_scale="jac",
+        ftol=_TOLERANCE,
+        xtol=_TOLERANCE,
+        gtol=_TOLERANCE,
+        max_nfev=evaluations,
+    )
     if found.status <= 0:
         raise FitRefused(
             f"the search from {_told(start)} did not converge in {evaluations} evaluations"
@@ -157,8 +162,8 @@ def walk(
         if arrived(residuals):
             return b, residuals
         try:
-            step, promised = _tangent_step(problem.weighted_jacobian(b), residuals)
-        except (FitRefused, np.linalg.LinAlgError):
+            step, promised = _tangent_step(problem.any_jacobian(b), residuals)
+        except np.linalg.LinAlgError:
             return None
         if not promised >= 0.0:
             return None
@@ -173,10 +178,9 @@ def walk(
 
 def _tangent_step(jacobian: FloatArray, residuals: FloatArray) -> tuple[FloatArray, float]:
     """Give the step to the lowest point of the tangent, and the fall of the squares there."""
-    with np.errstate(over="ignore", invalid="ignore"):
-        normal = jacobian.T @ jacobian
-        lengths = np.sqrt(normal.diagonal())
-        scaled = normal / np.outer(lengths, lengths)
+    normal = jacobian.T @ jacobian
+    lengths = np.sqrt(normal.diagonal())
+    scaled = normal / lengths / lengths[:, None]
     if not np.isfinite(scaled).all():
         raise np.linalg.LinAlgError("columns of no length, or of too much")
     gradient = jacobian.T @ residuals / lengths
@@ -194,8 +198,7 @@ def _kept_step(
         if not problem.holds(moved):
             continue
         beyond = problem.residuals(moved)
-        with np.errstate(over="ignore"):
-            fall = squares - float(beyond @ beyond)
+        fall = squares - float(beyond @ beyond)
         if fall >= _KEPT * part * (2.0 - part) * promised:
             return moved, beyond
     return None

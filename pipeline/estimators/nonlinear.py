@@ -20,8 +20,9 @@ from pipeline.estimators.double_double import FloatArray
 from pipeline.estimators.fit import Fit, error_variance, weighted_residual_sd
 from pipeline.estimators.gauss_newton import Minimum, Problem, descend, polish, walk
 
-# A second start confirms the first if its curve lies within this part of the residuals.
-_SAME = 1e-4
+# A second start confirms the first if its curve lies within this part of the residuals: another
+# minimum that near would give the same answer.
+_SAME = 1e-2
 _START_SHIFTS = (0.2, 0.5, 1.0, 0.05)
 _MOST_RESTARTS = 5
 _MOST_EVALUATIONS = 4000
@@ -106,11 +107,12 @@ def fit_nonlinear(
     problem = Problem(
         model, jacobian, values, sizes, _bound(lower, p, -np.inf), _bound(upper, p, np.inf)
     )
-    best = _first_minimum(problem, first)
     other = None if second_start is None else finite_array("second_start", second_start)
     if other is not None:
         same_length("second_start", other, p, "parameters")
-    best, returned, elsewhere = _confirmed(problem, best, other, confirmations)
+    with np.errstate(all="ignore"):  # a search tries what it then turns away from
+        best = _first_minimum(problem, first)
+        best, returned, elsewhere = _confirmed(problem, best, other, confirmations)
     residual_sd = weighted_residual_sd(best.residuals, dof)
     return NonlinearFit(
         parameters=best.parameters,

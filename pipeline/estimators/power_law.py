@@ -31,23 +31,45 @@ class PowerLawFit:
 
     Parameters
     ----------
-    factor, exponent : K and m, lowest order first, shapes (a,) and (b,)
-    covariance : of (K, m) together, shape (a + b, a + b)
+    factor_degree, exponent_degree : of K and m in t
     low, high : range of the fitted t
     lowest_rate, highest_rate : range of the fitted q
     errors : which error model was fitted
     fit : the fit behind it, of ln y or y, its parameters in the Chebyshev basis of the window
     """
 
-    factor: FloatArray
-    exponent: FloatArray
-    covariance: FloatArray
+    factor_degree: int
+    exponent_degree: int
     low: float
     high: float
     lowest_rate: float
     highest_rate: float
     errors: ErrorModel
     fit: NonlinearFit
+
+    @property
+    def factor(self) -> FloatArray:
+        """Coefficients of K, lowest order first, shape (a,)."""
+        return (self._to_raw() @ self.fit.parameters)[: self.factor_degree + 1]
+
+    @property
+    def exponent(self) -> FloatArray:
+        """Coefficients of m, lowest order first, shape (b,)."""
+        return (self._to_raw() @ self.fit.parameters)[self.factor_degree + 1 :]
+
+    @property
+    def covariance(self) -> FloatArray:
+        """Covariance of the coefficients of K and m together, shape (a + b, a + b)."""
+        to_raw = self._to_raw()
+        return np.asarray(to_raw @ self.fit.covariance @ to_raw.T)
+
+    def _to_raw(self) -> FloatArray:
+        """Matrix from the fitted parameters, in the Chebyshev basis, to raw coefficients."""
+        split, p = self.factor_degree + 1, len(self.fit.parameters)
+        matrix = np.zeros((p, p))
+        matrix[:split, :split] = raw_from_chebyshev(self.low, self.high, self.factor_degree).high
+        matrix[split:, split:] = raw_from_chebyshev(self.low, self.high, self.exponent_degree).high
+        return matrix
 
     def __call__(self, time: float, rate: float) -> tuple[float, float]:
         """Give y and its standard uncertainty at one time and rate `[unit of y]`.
@@ -62,7 +84,7 @@ class PowerLawFit:
                 f"{self.lowest_rate:g} to {self.highest_rate:g}, not at {time:g} and {rate:g}"
             )
         t = np.array([(time - middle(self.low, self.high)) / half_width(self.low, self.high)])
-        bases = _bases(t, len(self.factor) - 1, len(self.exponent) - 1)
+        bases = _bases(t, self.factor_degree, self.exponent_degree)
         y, slopes = _predict(self.fit.parameters, bases, np.log([rate]))
         variance = float(slopes[0] @ self.fit.covariance @ slopes[0])
         return float(y[0]), variance**0.5
@@ -130,14 +152,9 @@ def fit_power_law(
             f"the factor falls to {least:.3g} between the data; lower its degree",
             {"lowest_factor": least},
         )
-    to_raw = np.zeros((len(fit.parameters), len(fit.parameters)))
-    to_raw[:split, :split] = raw_from_chebyshev(low, high, factor_degree).high
-    to_raw[split:, split:] = raw_from_chebyshev(low, high, exponent_degree).high
-    raw = to_raw @ fit.parameters
     return PowerLawFit(
-        factor=raw[:split],
-        exponent=raw[split:],
-        covariance=to_raw @ fit.covariance @ to_raw.T,
+        factor_degree=factor_degree,
+        exponent_degree=exponent_degree,
         low=low,
         high=high,
         lowest_rate=float(rates.min()),
