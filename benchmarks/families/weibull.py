@@ -53,7 +53,7 @@ def point_rows(scale: float) -> list[Row]:
 
 def interval_rows(scale: float) -> list[Row]:
     """Measure 95 % intervals of shape, scale and B1 on the same samples."""
-    x = draw(N_INTERVAL, max(int(2000 * scale), 80))
+    x = draw(N_INTERVAL, max(int(1200 * scale), 80))
     truth = np.tile(_INTERVAL_TRUTH, (len(x), 1))
     made = measured_rows(_intervals(), list(x), truth)
     bounds, seconds = _timed(lambda: conditional_bounds(x), len(x))

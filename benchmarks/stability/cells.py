@@ -167,7 +167,7 @@ def _confirmed(
     """
     first = _simulate(estimator, failure, n, setting, draw, samples, "")
     if any(c.verdict == "SILENTLY WRONG" and c.silent < _CLEARLY for c in first):
-        return _simulate(estimator, failure, n, setting, draw, 3 * samples, " again")
+        return _simulate(estimator, failure, n, setting, draw, 2 * samples, " again")
     return first
 
 
