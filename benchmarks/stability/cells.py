@@ -96,17 +96,17 @@ class Cell:
 
     @property
     def verdict(self) -> Verdict:
-        """Silently wrong above 10 % of samples; else what happens to most; else within."""
-        if self.silent > self._limit:
+        """Silently wrong above `limit` of samples; else what happens to most; else within."""
+        if self.silent > self.limit:
             return "SILENTLY WRONG"
         if self.refused > MOSTLY:
             return "refused"
-        if self.flagged + self.refused > MOSTLY or self.missed > self._limit:
+        if self.flagged + self.refused > MOSTLY or self.missed > self.limit:
             return "flagged"
         return "within"
 
     @property
-    def _limit(self) -> float:
+    def limit(self) -> float:
         """Ten percent, or what chance gives a sound interval in one of a thousand such cells."""
         return max(SILENT_LIMIT, 0.05 + 3.1 * math.sqrt(0.05 * 0.95 / self.samples))
 

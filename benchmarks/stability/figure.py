@@ -22,7 +22,7 @@ _FACES = {
     "SILENTLY WRONG": "#A01020",
 }
 _MEANING = {
-    "within": "within: misses at most 10 %",
+    "within": "within: misses at most {limit:.0f} %",
     "flagged": "flagged",
     "refused": "refused",
     "SILENTLY WRONG": "silently wrong: misses more, unflagged",
@@ -40,6 +40,7 @@ def draw_map(
     title = f"{estimator.key[0].upper()}{estimator.key[1:]}: {question}"
     name = "map_" + re.sub(r"[^a-z0-9]+", "_", f"{estimator.key} {question}".lower())
     lines = _lines(mine)
+    limit = 100.0 * max(c.limit for c in mine)  # of few samples chance may miss more
     with figure_style(name):
         height_in = _ROW_in * len(lines) + 0.9
         figure = Figure(figsize=(PAGE_WIDTH_in, height_in))
@@ -49,7 +50,8 @@ def draw_map(
         axes.set_axis_off()
         _draw_lines(axes, lines)
         handles = [
-            Patch(facecolor=f, edgecolor="white", label=_MEANING[v]) for v, f in _FACES.items()
+            Patch(facecolor=f, edgecolor="white", label=_MEANING[v].format(limit=limit))
+            for v, f in _FACES.items()
         ]
         figure.legend(
             handles=handles, loc="lower left", ncols=4, columnspacing=1.2, handlelength=1.2
