@@ -14,7 +14,7 @@ paper: all  ## write processed/paper/: the article's numbers, printed beside rec
 	@$(BIN)/deamat paper
 
 test: $(VENV)/.dev  ## run the whole test suite
-	@$(BIN)/python -m pytest
+	@$(BIN)/python -m pytest --numprocesses=auto --dist=loadfile
 
 check: $(VENV)/.dev  ## style, types and import contracts
 	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy && $(BIN)/lint-imports
