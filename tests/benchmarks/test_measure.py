@@ -22,12 +22,13 @@ def test_differences_that_neither_clock_nor_simulation_can_tell_beat_nobody() ->
     assert front([1.0, float("nan"), 3.0], [float("nan"), 1.0, 2.0]) == [2]
 
 
-def test_a_batch_competes_with_nobody() -> None:
+def test_neither_a_batch_nor_who_had_fewer_samples_competes() -> None:
     rows: list[Row] = [
-        {"contender": "a", "kind": "default", "us per fit": 10.0, "error": 1.0},
-        {"contender": "b", "kind": "batch", "us per fit": 1.0, "error": 1.0},
+        {"contender": "a", "kind": "default", "us per fit": 10.0, "fits": 9, "error": 1.0},
+        {"contender": "b", "kind": "batch", "us per fit": 1.0, "fits": 9, "error": 1.0},
+        {"contender": "c", "kind": "outside", "us per fit": 5.0, "fits": 8, "error": 0.5},
     ]
-    assert [row["front"] for row in with_front(rows, "error")] == ["yes", "no"]
+    assert [row["front"] for row in with_front(rows, "error")] == ["yes", "no", "no"]
 
 
 def test_statistics_are_relative_to_the_truth() -> None:
