@@ -293,11 +293,11 @@ def choose_for(
             supported,
             "" if finer is None else finer.name,
             change,
-            f"{answer.name}: expected error {error:.3g}, within {tolerance:g}; {told}",
+            f"{answer.name}: expected error {error:.3g}, within {tolerance:.3g}; {told}",
         )
     least = min(a.error for a, _ in answered[: best + 1] if a.error is not None)
     raise FitRefused(
-        f"no law that the data support answers within {tolerance:g}: the least expected error is "
+        f"no law that the data support answers within {tolerance:.3g}: the least expected error is "
         f"{least:.3g}; measure more points, or ask for less",
         {"least_error": least, "tolerance": tolerance},
     )

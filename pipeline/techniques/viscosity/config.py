@@ -43,6 +43,13 @@ class ViscosityConfig(Declared):
     max_relative_error: float = Field(
         default=0.15, gt=0, description="root mean square of residual over law, refused beyond"
     )
+    answer_within: float | None = Field(
+        default=None,
+        gt=0,
+        description="expected error of viscosity at the stated times, as part of its greatest "
+        "reading, that will do: the cheapest law within it is taken; None takes the law that the "
+        "data support",
+    )
     reading_noise: float = Field(
         default=0.03, gt=0, description="part of the reading, where a file states no full scale"
     )

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from pipeline.estimators.linear import fit_linear
 from pipeline.estimators.monotone import fit_non_decreasing
 from pipeline.estimators.nonlinear import NonlinearFit, fit_nonlinear
 from pipeline.estimators.polynomial import PolynomialFit
-from pipeline.estimators.selection import Choice, choose
+from pipeline.estimators.selection import Choice, choose, choose_for
 from pipeline.techniques.viscosity.calibration import settled
 from pipeline.techniques.viscosity.config import ViscosityConfig
 from pipeline.techniques.viscosity.readings import Readings
@@ -25,6 +26,7 @@ from pipeline.techniques.viscosity.window import Windowed, combined, common_rang
 
 # A law that predicts left-out readings worse than the best by more than this is flagged.
 _PREDICTS_WORSE = 1.1
+_KIND_BY_COEFFICIENTS = {2: EXPONENTIAL, 3: POWER_LAW_TO_GEL}  # of the nonlinear laws
 _GEL_TIMES = np.geomspace(1.02, 8.0, 10)  # over the last time: where to start looking for the gel
 
 
@@ -32,7 +34,8 @@ def fit_newtonian(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeL
     """Choose the smallest law that the readings support and say what it is worth.
 
     Polynomials are kept positive and from falling; candidates are compared by AICc and the choice
-    is checked by leave-one-out cross-validation (see `estimators.selection`). What changes of
+    is checked by leave-one-out cross-validation (see `estimators.selection`); a tolerance in the
+    configuration takes a cheaper one where that answers as well as asked. What changes of
     rotor or speed show of the calibration error is taken off first (see `calibration`).
 
     Raises
@@ -41,8 +44,8 @@ def fit_newtonian(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeL
     """
     steps = settled(combined(windows), config.max_degree)
     readings = steps.readings
-    choice = choose(_candidates(readings, config))
-    kind, coefficients, covariance = _parameters(choice)
+    choice = _chosen(readings, config)
+    kind, coefficients, covariance = _parameters(choice.fit)
     law, slopes = FORMS[kind](coefficients, readings.time_s, None, ())
     relative = relative_error(readings.viscosity_Pas, law)
     if relative > config.max_relative_error:
@@ -79,7 +82,35 @@ def fit_newtonian(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeL
     )
 
 
-def _candidates(readings: Readings, config: ViscosityConfig) -> list[tuple[str, Callable[[], Fit]]]:
+def _chosen(readings: Readings, config: ViscosityConfig) -> Choice[Fit]:
+    """Take the law that the data support, or the cheapest that answers at all stated times."""
+    offers = [(name, cost, cache(fit)) for cost, name, fit in _offers(readings, config)]
+    if config.answer_within is None:
+        return choose([(name, fit) for name, _, fit in offers])
+    first, last = float(readings.time_s[0]), float(readings.time_s[-1])
+    times = [t for t in config.stated_times_s if first <= t <= last] or [first, last]
+    tolerance_Pas = config.answer_within * float(readings.viscosity_Pas.max())
+    answers = [choose_for(offers, partial(_answer, time_s=t), tolerance_Pas) for t in times]
+    names = [name for name, _, _ in offers]
+    costliest = max(answers, key=lambda a: (names.index(a.name), a.error))
+    return replace(
+        costliest.supported,
+        name=costliest.name,
+        fit=costliest.fit,
+        reason=f"{costliest.reason}; the data support {costliest.supported.name}",
+    )
+
+
+def _answer(fit: Fit, time_s: float) -> tuple[float, float]:
+    """Viscosity at a time and its standard uncertainty `[Pa.s]`."""
+    kind, coefficients, covariance = _parameters(fit)
+    value, slopes = FORMS[kind](coefficients, np.array([time_s]), None, ())
+    return float(value[0]), math.sqrt(max(float(slopes[0] @ covariance @ slopes[0]), 0.0))
+
+
+def _offers(
+    readings: Readings, config: ViscosityConfig
+) -> list[tuple[int, str, Callable[[], Fit]]]:
     """All laws on offer, the one with fewest coefficients first."""
     offers: list[tuple[int, str, Callable[[], Fit]]] = []
     if POLYNOMIAL in config.laws:
@@ -91,7 +122,7 @@ def _candidates(readings: Readings, config: ViscosityConfig) -> list[tuple[str, 
         offers.append((2, EXPONENTIAL, partial(_exponential, readings)))
     if POWER_LAW_TO_GEL in config.laws:
         offers.append((3, POWER_LAW_TO_GEL, partial(_power_law_to_gel, readings)))
-    return [(name, fit) for _, name, fit in sorted(offers, key=lambda offer: offer[0])]
+    return sorted(offers, key=lambda offer: offer[0])
 
 
 def _polynomial(readings: Readings, degree: int) -> PolynomialFit:
@@ -162,14 +193,13 @@ def _scaled(fit: NonlinearFit, scale: FloatArray) -> NonlinearFit:
     )
 
 
-def _parameters(choice: Choice[Fit]) -> tuple[str, FloatArray, FloatArray]:
-    """Kind, coefficients and covariance of the chosen fit."""
-    fit = choice.fit
+def _parameters(fit: Fit) -> tuple[str, FloatArray, FloatArray]:
+    """Kind, coefficients and covariance of a fit."""
     if isinstance(fit, PolynomialFit):
         return POLYNOMIAL, fit.coefficients, fit.covariance
     if isinstance(fit, NonlinearFit):
-        return choice.name, fit.parameters, fit.covariance
-    raise TypeError(f"{choice.name} is neither a polynomial nor a nonlinear fit")
+        return _KIND_BY_COEFFICIENTS[len(fit.parameters)], fit.parameters, fit.covariance
+    raise TypeError(f"a {type(fit).__name__} is neither a polynomial nor a nonlinear fit")
 
 
 def _valid(kind: str, coefficients: FloatArray, windows: Sequence[Windowed]) -> tuple[float, float]:
