@@ -75,8 +75,11 @@ def window(
             found,
         )
     x = strain[inside]
-    highest = np.maximum.accumulate(x)
-    back = float(np.maximum.reduce(highest - x))
+    first, last, back = float(x[0]), float(x[-1]), 0.0
+    if not (x[1:] >= x[:-1]).all():
+        highest = np.maximum.accumulate(x)
+        first, last = float(np.minimum.reduce(x)), float(highest[-1])
+        back = float(np.maximum.reduce(highest - x))
     if back > tolerance and back > 6.0 * _noise(x):
         name = _window_name(low, high)
         raise FitRefused(
@@ -85,7 +88,6 @@ def window(
             "alone or start the test below the window",
             {**found, "goes_back": back},
         )
-    first, last = float(np.minimum.reduce(x)), float(highest[-1])
     spare = max(MISSABLE * (high - low), 2.0 * (last - first) / (n - 1))
     if first > low + spare or last < high - spare:
         name = _window_name(low, high)

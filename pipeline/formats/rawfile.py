@@ -13,10 +13,10 @@ from pipeline.core.errors import RawFileError
 
 _MANY_LINES, _FEW_LINES = 64, 16  # enough for any header, and for nearly every one
 _ROWS_BELOW = 8  # rows of plain numbers that end a header
-_HEAD_BYTES = 16384
+_MANY_BYTES, _FEW_BYTES = 16384, 2048
 ROW_STARTS = frozenset("0123456789+-.")
-_NUMBERS = b"0123456789+-eE"
-_ROW = f"{_NUMBERS.decode()}.,;\t "
+_NUMBERS = b"0123456789+-"  # a letter among the numbers, such as of an exponent, is no plain number
+_ROW = _NUMBERS + b".,;\t "
 
 Answer = TypeVar("Answer")
 Details = ParamSpec("Details")
@@ -73,11 +73,10 @@ class Head(list[str]):
 
 
 def _count_rows(lines: list[str]) -> int:
-    """Count the rows of plain numbers at the end of some lines."""
-    for count, line in enumerate(reversed(lines)):
-        if line[:1] not in ROW_STARTS or line.strip(_ROW):
-            return count
-    return len(lines)
+    """Count the rows of plain numbers, and the blank lines, at the end of some lines."""
+    others = "\n".join(lines).encode().translate(None, _ROW)
+    above = others.rstrip(b"\n")
+    return len(others) - len(above) if above else len(lines)
 
 
 @dataclass(frozen=True)
@@ -148,13 +147,14 @@ class RawFile:
     @cached_property
     def head(self) -> Head:
         """The lines down to the first rows of plain numbers, or the first 64, as text."""
-        text = self.body[:_HEAD_BYTES].decode("utf-8", "replace")
-        lines = text.split("\n", _FEW_LINES)[:_FEW_LINES]
-        few = Head([line.rstrip("\r") for line in lines])
-        if few.rows >= _ROWS_BELOW:
+        few = self._first_lines(_FEW_LINES, _FEW_BYTES)
+        if len(few) == _FEW_LINES and few.rows >= _ROWS_BELOW:
             return few
-        lines = text.split("\n", _MANY_LINES)[:_MANY_LINES]
-        return Head([line.rstrip("\r") for line in lines])
+        return self._first_lines(_MANY_LINES, _MANY_BYTES)
+
+    def _first_lines(self, lines: int, size: int) -> Head:
+        text = self.body[:size].decode("utf-8", "replace").split("\n", lines)
+        return Head([line.rstrip("\r") for line in text[:lines]])
 
     def decimal_mark(self, line: int) -> str:
         """Give the decimal mark of rows not separated by commas: point, unless a comma is first.
