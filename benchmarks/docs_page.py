@@ -25,7 +25,7 @@ Written by `make docs`; every number below comes from one run of `python -m benc
 and all data in it are simulated. Times are processor time on one core and depend on the machine;
 the ratios, taken in the same run on the same samples, are what to compare. An error is relative to
 the known truth; which one is drawn stands on the axis of each chart. A contender is on the front
-unless another is clearly faster (20 %) and as right, or clearly more right (2 %) and as fast.
+unless another is clearly faster (10 %) and as right, or clearly more right (1 %) and as fast.
 Batches are measured but compete with nobody, nor does who is too slow for all samples. What is
 refused, or does not converge, is counted in a column of its own and enters no error.
 

@@ -21,9 +21,10 @@ Sample = TypeVar("Sample")
 
 _PARTS = 16  # contenders take turns this often, so that a drift of the machine hits all alike
 _ALPHA = 0.05
-# Relative differences that can be told: the same estimator timed twice in one run, under two names
-# on a busy machine, differs by up to 20 %; 2 % are four standard errors of the closest errors.
-_CLOCK, _SIMULATION = 0.2, 0.02
+# Relative differences that can be told: the same estimator timed twice in one run differs by some
+# 10 % (20 % on a busy machine); 1 % are two standard errors of the closest errors, for all
+# contenders answer the same samples.
+_CLOCK, _SIMULATION = 0.1, 0.01
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,7 +159,7 @@ def measured_rows(
 def front(times: Sequence[float], errors: Sequence[float]) -> list[int]:
     """Find the Pareto front as far as clock and simulation can tell.
 
-    One is beaten by another that is clearly faster (20 %) and as right, or clearly more right (2 %)
+    One is beaten by another that is clearly faster (10 %) and as right, or clearly more right (1 %)
     and as fast. NaN is never on the front.
 
     Returns
