@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -48,6 +49,11 @@ def test_scipy_solve_bvp_comes_to_the_same_tip(load: float, turn: float, angle: 
     assert np.hypot(found.tip_x_m - other.y[2, -1], found.tip_y_m - other.y[3, -1]) < 1e-8
 
 
+def _slope(t: float, y: NDArray[np.float64], load: float, angle: float) -> list[float]:
+    bend = -load * (1 - t) * math.sin(angle - y[0])
+    return [y[1], bend, math.cos(y[0]), math.sin(y[0])]
+
+
 def test_an_integrator_started_at_the_tip_arrives_at_the_clamp() -> None:
     """Random strips in random orientations, by an eighth-order Runge-Kutta method."""
     rng = np.random.default_rng(8)
@@ -55,11 +61,8 @@ def test_an_integrator_started_at_the_tip_arrives_at_the_clamp() -> None:
         load, turn, angle = 10 ** rng.uniform(-1, 1.8), rng.uniform(-4, 4), rng.uniform(-2.5, 2.5)
         found = solve(load, turn, angle)
 
-        def slope(t: float, y: NDArray[np.float64]) -> list[float]:
-            bend = -load * (1 - t) * math.sin(angle - y[0])  # noqa: B023  # used within the loop
-            return [y[1], bend, math.cos(y[0]), math.sin(y[0])]
-
         tip = [float(found.tip_angle_rad), turn, float(found.tip_x_m), float(found.tip_y_m)]
+        slope = partial(_slope, load=load, angle=angle)
         clamp = solve_ivp(slope, (1, 0), tip, "DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
         assert np.max(np.abs(clamp[[0, 2, 3]])) < 1e-7
 

@@ -42,8 +42,7 @@ def _curvatures(row: Row, law: Callable[[Reals], Reals] | None) -> tuple[float, 
         unimorph = replace(unimorph, active_thickness_m=thinned)
     best = best_passive_thickness(unimorph)
     optimum = multilayer(replace(unimorph, passive_thickness_m=best), POISSON_RATIO * s)
-    found = (multilayer(unimorph, POISSON_RATIO * s), best / UM, optimum)
-    return tuple(float(v) for v in found)  # type: ignore[return-value]  # three of them
+    return float(multilayer(unimorph, POISSON_RATIO * s)), float(best / UM), float(optimum)
 
 
 def _agrees(row: Row, found: tuple[float, float, float]) -> None:

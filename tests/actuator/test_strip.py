@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pipeline.actuator.beam import actuate
-from pipeline.actuator.stack import Layer, Stack
+from pipeline.actuator.stack import Layer, Role, Stack
 from pipeline.actuator.strain import pull_in_voltage
 from pipeline.actuator.strip import (
     Allowed,
@@ -43,8 +43,8 @@ ALLOWED = Allowed(0.01, 0.9)
 
 
 def stack() -> Stack:
-    def layer(role: str, thickness_m: float, modulus_Pa: float) -> Layer:
-        return Layer(role, thickness_m, modulus_Pa, 0.01, 1000.0, 2.6, 0.49)  # type: ignore[arg-type]  # a role by any of its names
+    def layer(role: Role, thickness_m: float, modulus_Pa: float) -> Layer:
+        return Layer(role, thickness_m, modulus_Pa, 0.01, 1000.0, 2.6, 0.49)
 
     electrode = layer("electrode", 10e-6, 3.5e6)
     return Stack((layer("passive", 200e-6, 1e6), electrode, layer("de", 500e-6, 1e5), electrode))

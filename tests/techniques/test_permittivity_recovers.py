@@ -18,6 +18,7 @@ from pipeline.estimators.impedance import loss_tangent
 from pipeline.formats.detect import detect
 from pipeline.formats.rawfile import RawFile
 from pipeline.techniques import TECHNIQUES
+from pipeline.techniques.permittivity.config import PermittivityConfig
 from pipeline.twin.campaign import SEED
 from pipeline.twin.compression import compression_part
 from pipeline.twin.permittivity import (
@@ -105,7 +106,7 @@ def test_the_simulated_meter_and_force_are_those_that_are_declared() -> None:
     )
     assert (name, machine.impedance) == ("lcr-6020-checked", METER)
     assert CONFIG.instruments.machine("GW Instek LCR-6020")[0] == "lcr-6020"
-    assert ROOM.config().u_micrometer_force == U_FORCE  # type: ignore[attr-defined]  # its class
+    assert PermittivityConfig().u_micrometer_force == U_FORCE
 
 
 def _interval(sweeps: list[SimulatedSweep], modulus: Quantity) -> tuple[float, float]:

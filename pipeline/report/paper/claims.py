@@ -25,7 +25,7 @@ from pipeline.actuator.optimum import (
     thickness_ratio_at_fixed_total,
 )
 from pipeline.actuator.ranges import Reals
-from pipeline.actuator.stack import FIRST_LAYER_DOWN, Layer, Stack
+from pipeline.actuator.stack import FIRST_LAYER_DOWN, Layer, Role, Stack
 from pipeline.actuator.strain import PULL_IN_STRAIN, drive
 from pipeline.report.paper import printed
 from pipeline.report.paper.actuators import PASSIVE, own
@@ -116,10 +116,13 @@ def _beam(field_V_m: float) -> Beam:
     design = own("design_1")
     u = design.unimorph
 
-    def layer(role: str, thickness_m: Reals, modulus_Pa: Reals) -> Layer:
-        dielectric = (design.relative_permittivity, printed.value("text.poisson_ratio"))
-        more = dielectric if role == "de" else (None, None)
-        return Layer(role, thickness_m, modulus_Pa, _WIDTH_m, ASSUMED_DENSITY_kg_m3, *more)  # type: ignore[arg-type]  # one of Role
+    def layer(role: Role, thickness_m: Reals, modulus_Pa: Reals) -> Layer:
+        plain = Layer(role, thickness_m, modulus_Pa, _WIDTH_m, ASSUMED_DENSITY_kg_m3)
+        if role != "de":
+            return plain
+        ratio = printed.value("text.poisson_ratio")
+        permittivity = design.relative_permittivity
+        return replace(plain, relative_permittivity=permittivity, poisson_ratio=ratio)
 
     electrode = layer("electrode", u.electrode_thickness_m, u.electrode_modulus_Pa)
     film = layer("de", u.active_thickness_m, u.active_modulus_Pa)
