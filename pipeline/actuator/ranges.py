@@ -29,6 +29,8 @@ _LENGTHS = "lengths are in metres: was it given in micrometres or millimetres?"
 _MODULI = "moduli are in pascals: was it given in megapascals or gigapascals?"
 _FIELDS = "fields are in volts per metre: was it given in volts per micrometre?"
 
+_UNIT_SLIPS = (_LENGTHS, _MODULI, _FIELDS)  # which make no number zero or negative
+
 RANGES: dict[str, Range] = {
     "thickness_m": Range(1e-9, 0.05, "m", _LENGTHS),
     "width_m": Range(1e-6, 1.0, "m", _LENGTHS),
@@ -101,6 +103,8 @@ def _complaint(
         return f"{quantity}{owner} is an empty array; {allowed}"
     bad = np.flatnonzero(~((values >= low) & (values <= high)))
     place = f" at design {bad[0]}" if values.ndim else ""
+    if mend in _UNIT_SLIPS and values.flat[bad[0]] <= 0.0:
+        mend = "give its magnitude, greater than zero"
     return f"{quantity}{owner} is {values.flat[bad[0]]:g}{unit}{place}; {allowed}; {mend}".rstrip(
         "; "
     )
