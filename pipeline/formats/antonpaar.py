@@ -43,7 +43,7 @@ def _recognises(head: Head) -> bool:
 
 
 def _read(file: RawFile) -> Recording:
-    layout = required(_layout(file.head), file, _READER.name)
+    layout = required(_layout(file.head), file.head, _READER.name, file.path)
     return read_table(file, layout, _READER, {})
 
 

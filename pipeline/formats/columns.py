@@ -53,24 +53,19 @@ class Columns:
     flags: tuple[Flag, ...]
 
 
-def columns_of(
-    path: str, layout: Layout, reader: Reader, header_units: Mapping[str, str]
-) -> Columns:
+def columns_of(layout: Layout, reader: Reader, header_units: Mapping[str, str]) -> Columns:
     """Find out what the columns below a layout are.
 
     Parameters
     ----------
-    path : of the file, for messages
     header_units : label to the unit that the header states for it
 
     Raises
     ------
-    RawFileError : a column without a unit, with an unknown one, or with an already used label
+    RawFileError : a column without a unit, with an unknown one, or with an already used label; it
+        names no file, for files of the same labels share the answer
     """
-    try:
-        return _columns(layout, reader, tuple(header_units.items()))
-    except RawFileError as error:
-        raise RawFileError(path, *error.args[1:]) from error
+    return _columns(layout, reader, tuple(header_units.items()))
 
 
 @lru_cache(maxsize=256)  # the files of a campaign have the same labels

@@ -23,7 +23,7 @@ def detect(file: RawFile) -> Format:
     ------
     RawFileError : none does, or several do; says what was found and which formats there are
     """
-    matching = file.head.once(_recognising)
+    matching = file.once(_recognising)
     if len(matching) == 1:
         return matching[0]
     known = ", ".join(form.name for form in FORMATS)

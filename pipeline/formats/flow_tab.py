@@ -59,7 +59,7 @@ def _recognises(head: list[str]) -> bool:
 
 
 def _read(file: RawFile) -> Recording:
-    layout = required(_layout(file.head), file, _READER.name)
+    layout = required(_layout(file.head), file.head, _READER.name, file.path)
     if file.encoding != "latin-1":
         return read_table(file, layout, _READER, {})
     spelt = tuple(unit.translate(_MAC_ROMAN) for unit in layout.units)

@@ -87,7 +87,7 @@ def _recognises(head: list[str]) -> bool:
 
 
 def _read(file: RawFile) -> Recording:
-    layout = required(_layout(file.head), file, _NAME)
+    layout = required(_layout(file.head), file.head, _NAME, file.path)
     delimiter = _delimiter(file.head[layout.names])
     decimal = "." if delimiter == "," else file.decimal_mark(layout.rows)
     reader = Reader(_NAME, _VERSION, Dialect(delimiter, decimal))

@@ -65,7 +65,7 @@ def _recognises(head: list[str]) -> bool:
 
 
 def _read(file: RawFile) -> Recording:
-    layout = required(_layout(file.head), file, _READER.name)
+    layout = required(_layout(file.head), file.head, _READER.name, file.path)
     stated = _stated_points(file.head[: layout.names])
     if stated is None:
         raise RawFileError(

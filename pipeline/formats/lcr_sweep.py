@@ -161,7 +161,7 @@ def read_sweep(
     columns = {c.name: _factor(file, c, sweep) * rows[:, i] for i, c in enumerate(sweep.columns)}
     _positive(file, columns["frequency_Hz"], sweep.first + 1)
     if over.any():
-        flags.append(_over_range_flag(over, columns["frequency_Hz"], sweep.first + 1))
+        flags += (_over_range_flag(over, columns["frequency_Hz"], sweep.first + 1),)
     source = Source(
         file.path, file.sha256, sweep.first + 1, sweep.first + len(lines), file.encoding,
         reader, version,

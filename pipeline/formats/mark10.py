@@ -50,7 +50,7 @@ def _recognises(head: Head) -> bool:
 
 
 def _read(file: RawFile) -> Recording:
-    layout = required(file.head.once(_layout), file, _READER.name)
+    layout = required(file.once(_layout), file.head, _READER.name, file.path)
     header = file.head[: layout.names]
     metadata = notes(header)
     if header and header[0][:1].isdigit():

@@ -27,9 +27,9 @@ from pipeline.core.records import Recording
 from pipeline.formats.cells import Dialect
 from pipeline.formats.columns import Reader
 from pipeline.formats.format import Format
-from pipeline.formats.header import Layout, inline_layout, notes, two_row_layout, units_row
+from pipeline.formats.header import Layout, inline_layout, two_row_layout, units_row
 from pipeline.formats.rawfile import Head, RawFile
-from pipeline.formats.table import read_table, required
+from pipeline.formats.table import read_plain
 
 _READER = Reader("mts", 1, Dialect("\t", decimal=","))
 
@@ -51,8 +51,7 @@ def _recognises(head: Head) -> bool:
 
 
 def _read(file: RawFile) -> Recording:
-    layout = required(file.head.once(_layout), file, _READER.name)
-    return read_table(file, layout, _READER, notes(file.head[: layout.names], "\t"))
+    return read_plain(file, _layout, _READER)
 
 
 FORMAT = Format(

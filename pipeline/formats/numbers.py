@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from functools import cache
 
 import numpy as np
 import simdjson
@@ -28,6 +27,7 @@ _CHUNK = 1 << 20  # bytes parsed at a time: the parser's workspace is some ten t
 # parse while something that it parsed is still referred to.
 _PARSER = simdjson.Parser()
 _RETURN, _LINE = b"\r\n"
+_TAIL = 64  # bytes that are searched for blank lines at the end; more of them go the slow way
 
 
 def read_block(file: RawFile, first: int, columns: int, dialect: Dialect) -> FloatArray:
@@ -46,16 +46,18 @@ def read_block(file: RawFile, first: int, columns: int, dialect: Dialect) -> Flo
     ------
     RawFileError : no rows, or anything in them that is not a number for certain
     """
-    block = file.body[file.offset(first) :]
-    ended = file.ends_open or block.endswith(b"\n")
-    rows = block.rstrip(b" \r\n")
-    lone_return = b"\r" in block[len(rows) :].replace(b"\r\n", b"\n")
+    start, end = file.offset(first), len(file.body)
+    tail = file.body[max(start, end - _TAIL) :]
+    ending = tail[len(tail.rstrip(b" \r\n")) :]
+    rows = file.body[start : end - len(ending)]
+    ended = file.ends_open or ending.endswith(b"\n")
+    lone_return = b"\r" in ending.replace(b"\r\n", b"\n")
     if dialect.segmented:
         rows = _BLANK_LINES.sub(b"\n", rows)
     table = parse(rows, columns, dialect) if rows and ended and not lone_return else None
     if table is not None:
         return table
-    text = block.replace(b"\r\n", b"\n").rstrip(b" \n").decode()
+    text = file.body[start:].replace(b"\r\n", b"\n").rstrip(b" \n").decode()
     if not text:
         raise RawFileError(
             file.path,
@@ -115,7 +117,7 @@ def _parse(block: bytes, columns: int, dialect: Dialect) -> FloatArray | None:
     values = None if text is None else _json_numbers(text)
     if text is None or values is None or values.size != rows * columns:
         return None  # one empty field leaves no number and no separator
-    if np.maximum.reduce(values) >= OVER_RANGE or np.minimum.reduce(values) <= -OVER_RANGE:
+    if not _within_range(values):
         return None
     if not fractions and not values.all() and _has_integer_minus_zero(text):
         return None
@@ -128,21 +130,14 @@ def _json_list(block: bytes, line_end: bytes, delimiter: bytes, decimal: bytes) 
         return None
     # The return of a line end becomes the comma. Its line feed stays, white space to JSON, so that
     # digits between the two would be a field too many or two numbers with no comma between them.
-    end = line_end[:1]
-    if delimiter == b",":
-        characters = np.frombuffer(block, dtype=np.uint8)
-        comma = (characters == ord(end)).view(np.uint8) * np.uint8(ord(end) ^ ord(","))
-        text = b"".join((b"[", (characters ^ comma).data, b"]"))  # fewer passes than `replace`
-    else:
-        text = b"".join((b"[", block.translate(_to_commas(decimal + delimiter + end)), b"]"))
-    if b"+" in text and not (b"+-" in text or b"+ " in text):  # JSON knows no leading plus
-        return re.sub(rb"([\[,]\n?)\+", rb"\1", text)
-    return text
-
-
-@cache
-def _to_commas(marks: bytes) -> bytes:
-    return bytes.maketrans(marks, b".,,")
+    text = np.frombuffer(block, dtype=np.uint8)
+    for mark, wanted in ((decimal, b"."), (delimiter, b","), (line_end[:1], b",")):
+        if mark != wanted:  # passes of numpy over bytes cost less than `translate` or `replace`
+            text = text ^ (text == ord(mark)).view(np.uint8) * np.uint8(ord(mark) ^ ord(wanted))
+    listed = b"".join((b"[", text.data, b"]"))
+    if b"+" in listed and not (b"+-" in listed or b"+ " in listed):  # JSON knows no leading plus
+        return re.sub(rb"([\[,]\n?)\+", rb"\1", listed)
+    return listed
 
 
 def _together(block: bytes) -> bool:
@@ -159,6 +154,13 @@ def _json_numbers(text: bytes) -> FloatArray | None:
     if not isinstance(parsed, simdjson.Array):
         return None
     return np.frombuffer(parsed.as_buffer(of_type="d"))  # a copy: nothing refers to `parsed` now
+
+
+def _within_range(values: FloatArray) -> bool:
+    with np.errstate(over="ignore"):
+        if values.dot(values) < OVER_RANGE**2:  # no square is greater than the sum of all
+            return True
+    return bool(np.abs(values).max() < OVER_RANGE)
 
 
 def _has_integer_minus_zero(text: bytes) -> bool:

@@ -47,7 +47,7 @@ def _recognises(head: Head) -> bool:
 
 
 def _read(file: RawFile) -> Recording:
-    layout = required(file.head.once(_layout), file, _READER.name)
+    layout = required(file.once(_layout), file.head, _READER.name, file.path)
     header = file.head[: layout.names]
     return read_table(file, layout, _READER, notes(header), stated_units("\n".join(header)))
 

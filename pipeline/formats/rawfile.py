@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import codecs
 import hashlib
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
+from pathlib import Path
 from typing import Concatenate, ParamSpec, TypeVar, cast
 
 from pipeline.core.errors import RawFileError
@@ -17,21 +19,14 @@ _MANY_BYTES, _FEW_BYTES = 16384, 2048
 ROW_STARTS = frozenset("0123456789+-.")
 _NUMBERS = b"0123456789+-"  # a letter among the numbers, such as of an exponent, is no plain number
 _ROW = _NUMBERS + b".,;\t "
+_HEADERS = 16  # a campaign has a few exporters, each of them with a header or two
 
 Answer = TypeVar("Answer")
 Details = ParamSpec("Details")
 
 
-@lru_cache(maxsize=256)
-def _answers(_header: tuple[str, ...], _separators: bytes) -> dict[object, object]:
-    return {}
-
-
 class Head(list[str]):
     """The first lines of a file, without their line ends, and what was found out about them.
-
-    Files of one exporter often differ in nothing but their numbers: heads with the same lines
-    above rows of the same separators share what was found out.
 
     Parameters
     ----------
@@ -42,9 +37,6 @@ class Head(list[str]):
         super().__init__(lines)
         self.rows = _count_rows(lines)  # of plain numbers, at the end
         self._answers: dict[object, object] = {}
-        if self.rows >= _ROWS_BELOW:
-            rows = "\n".join(lines[-self.rows :]).encode().translate(None, _NUMBERS)
-            self._answers = _answers(tuple(lines[: -self.rows]), rows)
 
     @cached_property
     def texts(self) -> list[int]:
@@ -64,7 +56,7 @@ class Head(list[str]):
         """Answer a question about these lines; detection and reading ask the same ones.
 
         The answer may rest on lines that are not rows of plain numbers, and on what parts the
-        numbers of those that are, but not on the numbers.
+        numbers of those that are, but not on the numbers: other files share it.
         """
         key = (question, args, *kwargs.items())
         if key not in self._answers:
@@ -77,6 +69,16 @@ def _count_rows(lines: list[str]) -> int:
     others = "\n".join(lines).encode().translate(None, _ROW)
     above = others.rstrip(b"\n")
     return len(others) - len(above) if above else len(lines)
+
+
+def whole_file(path: Path) -> bytes:
+    """Give the bytes of a file, without the buffer that only helps who reads it in pieces."""
+    with path.open("rb", buffering=0) as file:
+        return file.read()
+
+
+# Header, separators of the rows below, where they end at the latest in another file, and the head.
+_SEEN: deque[tuple[bytes, bytes, int, Head]] = deque(maxlen=_HEADERS)
 
 
 @dataclass(frozen=True)
@@ -151,6 +153,34 @@ class RawFile:
         if len(few) == _FEW_LINES and few.rows >= _ROWS_BELOW:
             return few
         return self._first_lines(_MANY_LINES, _MANY_BYTES)
+
+    def once(
+        self,
+        question: Callable[Concatenate[Head, Details], Answer],
+        *args: Details.args,
+        **kwargs: Details.kwargs,
+    ) -> Answer:
+        """Answer a question about the head, as `Head.once` does, or as an earlier head did.
+
+        Files of one exporter often differ in nothing but their numbers: those with the same lines
+        above rows of the same separators share their answers.
+        """
+        return self._alike.once(question, *args, **kwargs)
+
+    @cached_property
+    def _alike(self) -> Head:
+        """The head of the first file that differs from this one in numbers alone."""
+        for header, separators, reach, head in _SEEN:
+            if self.body.startswith(header):
+                below = self.body[len(header) : reach].translate(None, _NUMBERS)
+                if below.startswith(separators):
+                    return head
+        head = self.head
+        if head.rows >= _ROWS_BELOW:
+            first, end = self.offset(len(head) - head.rows), self.offset(len(head))
+            separators = self.body[first:end].translate(None, _NUMBERS)
+            _SEEN.appendleft((self.body[:first], separators, 2 * end - first, head))
+        return head
 
     def _first_lines(self, lines: int, size: int) -> Head:
         text = self.body[:size].decode("utf-8", "replace").split("\n", lines)

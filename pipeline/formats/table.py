@@ -2,29 +2,66 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from pipeline.core.errors import RawFileError
 from pipeline.core.records import Flag, FloatArray, Recording, Source
 from pipeline.formats.cells import looks_numeric
-from pipeline.formats.columns import Reader, columns_of
-from pipeline.formats.header import Layout
+from pipeline.formats.columns import Columns, Reader, columns_of
+from pipeline.formats.header import Layout, notes
 from pipeline.formats.numbers import read_block, row_lines
-from pipeline.formats.rawfile import RawFile
+from pipeline.formats.rawfile import Head, RawFile
 
 
-def required(layout: Layout | None, file: RawFile, name: str) -> Layout:
+@dataclass(frozen=True, slots=True)
+class _Heading:
+    """What stands above the rows of a table.
+
+    Parameters
+    ----------
+    rows : line of the first row, counted from 0
+    columns : what they are
+    metadata : what the header says, as text
+    """
+
+    rows: int
+    columns: Columns
+    metadata: Mapping[str, str]
+
+
+def required(layout: Layout | None, head: Head, name: str, path: str = "") -> Layout:
     """Give the layout, or refuse a file that a register sends to the wrong reader."""
     if layout is None:
         raise RawFileError(
-            file.path,
+            path,
             f"no row of labels and units as the {name} form has it",
-            value=file.head[0],
+            value=head[0],
             mend="leave the register's `format` empty to have the form detected",
         )
     return layout
+
+
+def read_plain(
+    file: RawFile, layout_of: Callable[[Head], Layout | None], reader: Reader
+) -> Recording:
+    """Read a file of some lines of notes above one table, and convert every column to SI.
+
+    Parameters
+    ----------
+    layout_of : finds the table
+
+    Raises
+    ------
+    RawFileError : as `read_table`, or there is no table
+    """
+    try:
+        heading = file.once(_plain_heading, layout_of, reader)
+    except RawFileError as error:
+        raise RawFileError(file.path, *error.args[1:]) from error
+    return _read_rows(file, heading, reader)
 
 
 def read_table(
@@ -46,19 +83,40 @@ def read_table(
     RawFileError : a column without a unit, with an unknown one, or with an already used label;
         or rows that are not numbers for certain
     """
-    _refuse_rows_above(file, layout, reader.dialect.delimiter)
-    told = columns_of(file.path, layout, reader, header_units or {})
-    if told.documented:
-        metadata = {**metadata, "units not written in the file": ", ".join(told.documented)}
-    first = _first_row(file, layout)
-    rows = read_block(file, first, len(told.names), reader.dialect)
-    lines = row_lines(file, first, len(rows), reader.dialect)
-    columns = {
-        name: _to_si(rows[:, column], factor, offset)
-        for column, (name, (factor, offset)) in enumerate(
-            zip(told.names, told.conversions, strict=True)
-        )
-    }
+    try:
+        heading = _heading(file.head, layout, reader, metadata, header_units or {})
+    except RawFileError as error:
+        raise RawFileError(file.path, *error.args[1:]) from error
+    return _read_rows(file, heading, reader)
+
+
+def _plain_heading(
+    head: Head, layout_of: Callable[[Head], Layout | None], reader: Reader
+) -> _Heading:
+    layout = required(layout_of(head), head, reader.name)
+    metadata = notes(head[: layout.names], reader.dialect.delimiter)
+    return _heading(head, layout, reader, metadata, {})
+
+
+def _heading(
+    head: Head,
+    layout: Layout,
+    reader: Reader,
+    metadata: Mapping[str, str],
+    header_units: Mapping[str, str],
+) -> _Heading:
+    _refuse_rows_above(head, layout, reader.dialect.delimiter)
+    columns = columns_of(layout, reader, header_units)
+    if columns.documented:
+        metadata = {**metadata, "units not written in the file": ", ".join(columns.documented)}
+    return _Heading(_first_row(head, layout), columns, metadata)
+
+
+def _read_rows(file: RawFile, heading: _Heading, reader: Reader) -> Recording:
+    told = heading.columns
+    rows = read_block(file, heading.rows, len(told.names), reader.dialect)
+    lines = row_lines(file, heading.rows, len(rows), reader.dialect)
+    columns = _to_si(rows, told.conversions)
     source = Source(
         path=file.path,
         sha256=file.sha256,
@@ -68,24 +126,28 @@ def read_table(
         reader=reader.name,
         reader_version=reader.version,
     )
-    flags = (*told.flags, *row_flags(rows, told.names, lines))
-    return Recording(columns, metadata, told.written, source, flags)
+    lead = columns[_lead(told.names)]
+    flags = told.flags
+    if not (lead[1:] > lead[:-1]).all():  # nearly every recording rises, so it repeats no row
+        flags += row_flags(rows, told.names, lines)
+    named = dict(zip(told.names, columns, strict=True))
+    return Recording(named, heading.metadata, told.written, source, flags)
 
 
-def _first_row(file: RawFile, layout: Layout) -> int:
+def _first_row(head: Head, layout: Layout) -> int:
     """Skip blank lines between the labels and the rows."""
-    for at in range(layout.rows, len(file.head)):
-        if file.head[at].strip():
+    for at in range(layout.rows, len(head)):
+        if head[at].strip():
             return at
     return layout.rows
 
 
-def _refuse_rows_above(file: RawFile, layout: Layout, delimiter: str) -> None:
+def _refuse_rows_above(head: Head, layout: Layout, delimiter: str) -> None:
     """Refuse a second table: what stands above the labels is kept as text, so no rows may."""
-    for at, line in enumerate(file.head[: layout.names]):
+    for at, line in enumerate(head[: layout.names]):
         if delimiter in line and all(map(looks_numeric, line.split(delimiter))):
             raise RawFileError(
-                file.path,
+                "",
                 "a row of numbers above the labels",
                 line=at + 1,
                 value=line,
@@ -93,7 +155,7 @@ def _refuse_rows_above(file: RawFile, layout: Layout, delimiter: str) -> None:
             )
 
 
-def row_flags(rows: FloatArray, names: tuple[str, ...], lines: Sequence[int]) -> list[Flag]:
+def row_flags(rows: FloatArray, names: tuple[str, ...], lines: Sequence[int]) -> tuple[Flag, ...]:
     """Notice rows that repeat the row before them, and time that runs backwards.
 
     Parameters
@@ -101,13 +163,16 @@ def row_flags(rows: FloatArray, names: tuple[str, ...], lines: Sequence[int]) ->
     rows : shape (rows, columns), units as written
     lines : line of each row, counted from 1
     """
-    lead = names.index("time_s") if "time_s" in names else 0
-    if (rows[1:, lead] > rows[:-1, lead]).all():
-        return []  # a column that only rises repeats no row: nearly every recording
+    lead = _lead(names)
     flags = _repeats(rows, lead, lines)
     if "time_s" in names:
         flags += _steps_back(rows[:, lead], lines)
-    return flags
+    return tuple(flags)
+
+
+def _lead(names: tuple[str, ...]) -> int:
+    """Give the column that tells most rows apart: time, or the first."""
+    return names.index("time_s") if "time_s" in names else 0
 
 
 def _repeats(rows: FloatArray, lead: int, lines: Sequence[int]) -> list[Flag]:
@@ -136,9 +201,12 @@ def _steps_back(time: FloatArray, lines: Sequence[int]) -> list[Flag]:
     return [Flag("time-not-increasing", detail)]
 
 
-def _to_si(values: FloatArray, factor: float, offset: float) -> FloatArray:
-    """Convert a column of the table as an array of its own: `SI = factor * written + offset`."""
-    if factor == 1.0 and offset == 0.0:
-        return values.copy()
-    scaled = values * factor
-    return scaled + offset if offset else scaled
+def _to_si(rows: FloatArray, conversions: Sequence[tuple[float, float]]) -> FloatArray:
+    """Convert rows as written to columns, shape (columns, n): `SI = factor * written + offset`."""
+    columns = rows.T.copy()
+    for column, (factor, offset) in zip(columns, conversions, strict=True):
+        if factor != 1.0:
+            column *= factor
+        if offset:
+            column += offset
+    return columns

@@ -33,9 +33,9 @@ from pipeline.core.records import Flag, Recording
 from pipeline.formats.cells import Dialect
 from pipeline.formats.columns import Reader
 from pipeline.formats.format import Format
-from pipeline.formats.header import Layout, notes, two_row_layout
+from pipeline.formats.header import Layout, two_row_layout
 from pipeline.formats.rawfile import Head, RawFile
-from pipeline.formats.table import read_table, required
+from pipeline.formats.table import read_plain
 
 _READER = Reader("zwick", 1, Dialect(","))
 
@@ -59,8 +59,7 @@ def _recognises(head: Head) -> bool:
 
 
 def _read(file: RawFile) -> Recording:
-    layout = required(file.head.once(_layout), file, _READER.name)
-    recording = read_table(file, layout, _READER, notes(file.head[: layout.names], ","))
+    recording = read_plain(file, _layout, _READER)
     return replace(recording, flags=recording.flags + _trailing_zeros(recording))
 
 

@@ -12,7 +12,7 @@ from pipeline.core.technique import Context
 from pipeline.formats.detect import by_name, detect
 from pipeline.formats.documentation import contradictions
 from pipeline.formats.format import Format
-from pipeline.formats.rawfile import RawFile
+from pipeline.formats.rawfile import RawFile, whole_file
 from pipeline.techniques import TECHNIQUES
 
 FILES_PER_TASK = 25
@@ -68,7 +68,7 @@ def reduce_one(task: Task) -> Reduced:
 
 
 def _read(task: Task, path: str) -> Recording:
-    file = RawFile(path, (task.raw / path).read_bytes(), task.ends_open)
+    file = RawFile(path, whole_file(task.raw / path), task.ends_open)
     if file.sha256 != task.sha256:
         raise RawFileError(path, "the file changed while it was being read", mend="run again")
     recording = _format(task.specimen, file).read(file)

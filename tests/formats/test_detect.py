@@ -149,7 +149,7 @@ def test_heads_with_the_same_header_share_what_was_found_out() -> None:
     rows = [f"{i}.5,-{i}.003" for i in range(20)]
     for header, lines in (("a", rows), ("a", rows[::-1]), ("b", rows), ("a", rows[:6])):
         text = "\n".join([header, "s,mm", *lines, ""])
-        assert RawFile("x", text.encode()).head.once(question) == header
+        assert RawFile("x", text.encode()).once(question) == header
     assert asked == ["0.5,-0.003", "0.5,-0.003", "0.5,-0.003"]
 
 
