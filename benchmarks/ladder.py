@@ -21,7 +21,15 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from benchmarks.timing import RESULTS, Row, interleaved, stay_on_one_core, table, write_results
+from benchmarks.timing import (
+    RESULTS,
+    Row,
+    interleaved,
+    stay_on_one_core,
+    table,
+    undisturbed_s,
+    write_results,
+)
 from pipeline.actuator.beam import Beam, actuate, weight
 from pipeline.actuator.ladder import NEGLECTS, Actuator, Aim, Answer, Rung, choose, evaluate
 from pipeline.actuator.ranges import Reals
@@ -105,7 +113,7 @@ def tip_error(answer: Answer, reference: Answer, length_m: float) -> float:
 
 
 def costs_us(draws: Sequence[Draw]) -> dict[str, float]:
-    """Give the processor time of every model for one design, the least of five rounds `[us]`."""
+    """Give the processor time of every model for one design, undisturbed `[us]`."""
     some = [d.actuator for d in draws[:TIMED]]
 
     # In batches: what one model leaves in the caches shall not be the price of the next
@@ -119,8 +127,8 @@ def costs_us(draws: Sequence[Draw]) -> dict[str, float]:
 
     contenders: dict[str, Callable[[list[Actuator]], object]] = {r: evaluating(r) for r in NEGLECTS}
     contenders |= {f"choose to {t:g}": choosing(t) for t in TOLERANCES}
-    seconds = interleaved(contenders, batches, rounds=5)
-    return {name: 1e6 * min(rounds) / len(some) for name, rounds in seconds.items()}
+    seconds = interleaved(contenders, [[batch] for batch in batches], rounds=5)
+    return {name: 1e6 * undisturbed_s(times) / len(some) for name, times in seconds.items()}
 
 
 def row(name: str, cost_us: float, apart: Floats, bent: Floats) -> Row:

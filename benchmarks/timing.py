@@ -1,4 +1,4 @@
-"""Timing that survives a busy machine: one core, interleaved contenders, medians and ratios."""
+"""Timing that survives a busy machine: one core, interleaved contenders, the least of rounds."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import json
 import os
 import platform
 import resource
-import statistics
 import subprocess
 import sys
 import time
@@ -17,9 +16,12 @@ from importlib import metadata
 from pathlib import Path
 from typing import TypeVar
 
+import numpy as np
+from numpy.typing import NDArray
+
 from pipeline.core.atomic import write_atomically
 
-Part = TypeVar("Part")
+Item = TypeVar("Item")
 Row = Mapping[str, str | float | int]
 
 RESULTS = Path("processed/benchmarks")
@@ -32,36 +34,48 @@ def stay_on_one_core() -> None:
 
 
 def interleaved(
-    contenders: Mapping[str, Callable[[Part], object]],
-    parts: Sequence[Part],
+    contenders: Mapping[str, Callable[[Item], object]],
+    parts: Sequence[Sequence[Item]],
     rounds: int,
     clock: Callable[[], float] = time.process_time,
-) -> dict[str, list[float]]:
-    """Let every contender do every part, turn by turn, so that a drift of the machine cancels.
+) -> dict[str, NDArray[np.float64]]:
+    """Let every contender do every item, part by part in turn: a drift of the machine cancels.
 
     Who begins moves on by one from part to part: what a contender leaves in the caches helps or
     harms all others alike. The clock counts the processor time of this process: other users of the
-    machine lengthen the wall time and not this one.
+    machine lengthen the wall time more than this one.
 
     Returns
     -------
-    seconds by contender, one number for each round, shape (rounds,)
+    seconds by contender, shape (rounds, items)
     """
     names = list(contenders)
-    seconds: dict[str, list[float]] = {name: [0.0] * rounds for name in names}
+    seconds: dict[str, list[list[float]]] = {name: [] for name in names}
     for turn in range(rounds):
+        for times in seconds.values():
+            times.append([])
         for number, part in enumerate(parts):
             first = (turn + number) % len(names)
             for name in names[first:] + names[:first]:
-                start = clock()
-                contenders[name](part)
-                seconds[name][turn] += clock() - start
-    return seconds
+                work, round_s = contenders[name], seconds[name][-1]
+                for item in part:
+                    start = clock()
+                    work(item)
+                    round_s.append(clock() - start)
+    return {name: np.array(times) for name, times in seconds.items()}
 
 
-def median_ratio(numerators: Sequence[float], denominators: Sequence[float]) -> float:
-    """Give the median of the rounds' own ratios; each of them compares like with like."""
-    return statistics.median(a / b for a, b in zip(numerators, denominators, strict=True))
+def undisturbed_s(seconds: NDArray[np.float64]) -> float:
+    """Add up the least that any round took for each item `[s]`.
+
+    Who shares the core and its caches slows code by up to twice, and code that computes more than
+    code that waits for memory; such times last longer than an item and come and go between rounds.
+
+    Parameters
+    ----------
+    seconds : of `interleaved`, shape (rounds, items)
+    """
+    return float(seconds.min(axis=0).sum())
 
 
 def wall_times_s(command: Sequence[str], times: int) -> list[float]:

@@ -69,20 +69,18 @@ def test_the_curves_of_a_campaign_are_found_again(tmp_path: Path) -> None:
     }
 
 
-def test_targets_are_judged_both_ways() -> None:
-    hashed = "times ours, hashed"
+def test_targets_are_judged_and_what_the_hash_costs_is_told() -> None:
+    names = ("form", "contender", "times ours", "times ours, hashed", "target")
     rows: list[Row] = [
-        {"form": "mts", "contender": rival, "times ours": bare, hashed: 1.9, "target": target}
-        for rival, bare, target in (
-            ("pandas + OLS", 2.5, 2.0),
-            ("pandas + lmfit", 8.0, 10.0),
-            ("ours", 1.0, "-"),
+        dict(zip(names, row, strict=True))
+        for row in (
+            ("mts", "pandas + OLS", 2.5, 1.9, 2.0),
+            ("mts", "pandas + lmfit", 8.0, "-", 10.0),
+            ("mts", "ours", 1.0, 0.9, "-"),
         )
     ]
     assert judged(rows, [("peak memory [MB]", 300.0, 250.0)]) == [
-        "met: mts: ours is 2.5 times faster than pandas + OLS, wanted 2",
-        "MISSED: mts: ours, hashed is 1.9 times faster than pandas + OLS, wanted 2",
+        "met: mts: ours is 2.5 times faster than pandas + OLS, wanted 2 (1.9 with the hash)",
         "MISSED: mts: ours is 8.0 times faster than pandas + lmfit, wanted 10",
-        "MISSED: mts: ours, hashed is 1.9 times faster than pandas + lmfit, wanted 10",
         "MISSED: peak memory [MB] 300, wanted less than 250",
     ]

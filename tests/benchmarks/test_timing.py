@@ -8,6 +8,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from benchmarks import timing
@@ -34,15 +35,19 @@ class Clock:
 def test_every_contender_does_every_part_and_who_begins_moves_on() -> None:
     clock = Clock()
     contenders = {name: clock.worker(name, cost) for name, cost in (("a", 1.0), ("b", 3.0))}
-    seconds = timing.interleaved(contenders, parts=[1, 10, 100], rounds=2, clock=clock)
-    assert seconds == {"a": [111.0, 111.0], "b": [333.0, 333.0]}
-    first_of_each_part = [name for name, _ in clock.log[::2]]
-    assert first_of_each_part == ["a", "b", "a", "b", "a", "b"]
+    seconds = timing.interleaved(contenders, [[1, 2], [10, 20], [100]], rounds=2, clock=clock)
+    costs = [1.0, 2.0, 10.0, 20.0, 100.0]
+    assert seconds["a"].tolist() == [costs, costs]
+    assert seconds["b"].tolist() == [[3.0 * cost for cost in costs]] * 2
+    assert [(name, item) for name, item in clock.log if item in (1, 10, 100)] == [
+        *[("a", 1), ("b", 1), ("b", 10), ("a", 10), ("a", 100), ("b", 100)],
+        *[("b", 1), ("a", 1), ("a", 10), ("b", 10), ("b", 100), ("a", 100)],
+    ]
 
 
-def test_a_ratio_compares_within_each_round() -> None:
-    # The ratio of the medians would be 8/3: numbers of different rounds.
-    assert timing.median_ratio([2.0, 9.0, 8.0], [1.0, 3.0, 4.0]) == 2.0
+def test_a_disturbance_of_one_round_leaves_no_trace() -> None:
+    rounds = np.array([[1.0, 2.0, 9.0], [5.0, 2.5, 3.0]])
+    assert timing.undisturbed_s(rounds) == 1.0 + 2.0 + 3.0
 
 
 def test_a_command_that_fails_is_an_error_and_not_a_fast_run() -> None:
