@@ -12,7 +12,7 @@ from typing import Any
 
 from pipeline.core.errors import ConfigError
 from pipeline.run.folders import Folders, look
-from pipeline.run.release import intact
+from pipeline.run.published import intact
 from pipeline.run.state import State
 
 

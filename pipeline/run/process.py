@@ -20,7 +20,8 @@ from pipeline.run.describe import describe
 from pipeline.run.folders import Folders, Stat, locate
 from pipeline.run.measure import Bench, Group, Measured, Progress, in_order, measure, summarise
 from pipeline.run.publish import publish
-from pipeline.run.release import Release, listing
+from pipeline.run.published import listing
+from pipeline.run.release import Release
 from pipeline.run.state import State
 from pipeline.run.survey import Survey, survey
 from pipeline.techniques import TECHNIQUES

@@ -8,13 +8,13 @@ change is a hard link to the file of the release before.
 from __future__ import annotations
 
 import filecmp
-import json
 import os
 import shutil
 from pathlib import Path
 
+from pipeline.run.published import FACES, as_listed, known, leads_to
+
 _KEPT = 3  # releases beside the current one; an auditor may look back, a disk must not fill
-_FACES = ("materials.sqlite", "curves.h5", "cards", "figures", "audit")
 
 
 class Release:
@@ -29,7 +29,7 @@ class Release:
             shutil.rmtree(left)
         self.building = self.releases / ".building"
         self.building.mkdir()
-        self.before, self.files = _known(published)
+        self.before, self.files = known(published)
 
     def path(self, name: str) -> Path:
         """Where to write an output."""
@@ -40,7 +40,7 @@ class Release:
     def keep(self, *names: str) -> bool:
         """Take unchanged outputs over from the release before; False if one is not as it was."""
         place = self.releases / self.before
-        if not all(n in self.files and _is(place / n, self.files[n]) for n in names):
+        if not all(n in self.files and as_listed(place / n, self.files[n]) for n in names):
             return False
         for name in names:
             os.link(place / name, self.path(name))
@@ -62,7 +62,7 @@ class Release:
             self.building.rename(place)
         _sync(self.releases)
         _point(self.releases / "current", place.name)
-        for face in _FACES:
+        for face in FACES:
             _point(self.processed / face, f"releases/current/{face}")
         self._prune(place)
         return place
@@ -74,53 +74,9 @@ class Release:
             shutil.rmtree(path)
 
 
-def listing(place: Path) -> str:
-    """What stands in a release, to be held against `intact` later."""
-    files = {
-        str(p.relative_to(place)): [p.stat().st_size, p.stat().st_mtime_ns]
-        for p in sorted(place.rglob("*"))
-        if p.is_file()
-    }
-    return json.dumps([place.name, files])
-
-
-def intact(processed: Path, published: str | None) -> bool:
-    """Say whether the published release is still there, file for file."""
-    name, files = _known(published)
-    place = processed / "releases" / name
-    links = [processed / face for face in _FACES]
-    return (
-        bool(name)
-        and all(link.is_symlink() for link in links)
-        and _leads_to(processed / "releases" / "current", name)
-        and all(_is(place / file, seen) for file, seen in files.items())
-    )
-
-
-def _known(published: str | None) -> tuple[str, dict[str, list[int]]]:
-    """Read a `listing` back: the release's name and its files."""
-    if published is None:
-        return "", {}
-    name, files = json.loads(published)
-    return name, files
-
-
-def _is(path: Path, seen: list[int]) -> bool:
-    """Say whether a file has the size and time of change that were listed."""
-    try:
-        stat = path.stat()
-    except FileNotFoundError:
-        return False
-    return [stat.st_size, stat.st_mtime_ns] == seen
-
-
-def _leads_to(link: Path, target: str) -> bool:
-    return link.is_symlink() and str(link.readlink()) == target
-
-
 def _point(link: Path, target: str) -> None:
     """Swap a link in one step."""
-    if _leads_to(link, target):
+    if leads_to(link, target):
         return
     beside = link.with_name(f".{link.name}.new")
     beside.unlink(missing_ok=True)

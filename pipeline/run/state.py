@@ -47,14 +47,14 @@ class State:
             (version,) = db.execute("PRAGMA user_version").fetchone()
             if version not in (0, _VERSION):
                 raise sqlite3.DatabaseError("another version")
-            db.executescript(_SCHEMA)
-            db.execute(f"PRAGMA user_version = {_VERSION}")
+            if version == 0:  # no write, to wait for the disk with, where everything is there
+                _begin(db)
+            db.execute("SELECT 1 FROM input, made, note LIMIT 0")
         except sqlite3.DatabaseError:
             db.close()
             path.unlink()
             db = sqlite3.connect(path)
-            db.executescript(_SCHEMA)
-            db.execute(f"PRAGMA user_version = {_VERSION}")
+            _begin(db)
         return db
 
     def __enter__(self) -> State:
@@ -130,3 +130,8 @@ class State:
         """Give the word that an earlier run kept, None if there was none."""
         row = self.db.execute("SELECT value FROM note WHERE name = ?", [name]).fetchone()
         return None if row is None else str(row[0])
+
+
+def _begin(db: sqlite3.Connection) -> None:
+    db.executescript(_SCHEMA)
+    db.execute(f"PRAGMA user_version = {_VERSION}")

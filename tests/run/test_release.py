@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import sqlite3
 from pathlib import Path
 
 import pytest
@@ -68,8 +69,13 @@ def test_a_run_that_dies_leaves_the_last_release_readable(
 
 def test_a_damaged_state_costs_time_not_results(folders: Folders) -> None:
     release = run(folders)["release"]
-    (folders.processed / "state.sqlite").write_bytes(b"this is no database" * 100)
+    state = folders.processed / "state.sqlite"
+    state.write_bytes(b"this is no database" * 100)
     assert run(folders)["release"] == release
+    with sqlite3.connect(state) as db:
+        db.execute("DROP TABLE made")
+    assert run(folders)["release"] == release
+    assert run(folders)["nothing_to_do"]
 
 
 def test_a_second_run_in_the_same_folder_is_turned_away(folders: Folders) -> None:
