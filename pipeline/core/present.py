@@ -119,9 +119,13 @@ def readable(quantity: Quantity, key: str = "") -> str:
 
 
 def readable_record(record: PropertyRecord) -> str:
-    """Write the value of a record: `158.8 ± 1.1 kPa`, or `>= 12.0 h` where it is only a limit."""
-    text = readable(record.quantity, record.key)
-    return f">= {text}" if record.bound == "lower" else text
+    """Write the value of a record: `158.8 ± 1.1 kPa`, `6 to 6.5 h` or `>= 12 h` of a limit."""
+    scale = scale_of(record.quantity, record.key)
+    if record.bound == "interval":
+        return readable_interval(record.ci95, scale)
+    if record.bound == "lower":
+        return f">= {scale.with_number(record.quantity.value)}"
+    return readable(record.quantity, record.key)
 
 
 def readable_interval(interval: tuple[float, float], scale: Scale) -> str:

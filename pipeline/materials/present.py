@@ -134,11 +134,15 @@ def _flag_details(card: MaterialCard) -> dict[str, str]:
 
 
 def _in_table_order(records: Sequence[PropertyRecord]) -> list[PropertyRecord]:
-    """Sort as the property table does, the reference age before the others."""
+    """Sort as the property table does, the reference age first, times and rates as they rise."""
     order = list(PROPERTIES)
-    return sorted(
-        records, key=lambda r: (order.index(r.key), r.conditions.get("age") != REFERENCE_AGE)
-    )
+
+    def place(record: PropertyRecord) -> tuple[int, bool, list[tuple[str, float]]]:
+        conditions = record.conditions
+        numbers = [(name, v) for name, v in sorted(conditions.items()) if isinstance(v, float)]
+        return order.index(record.key), conditions.get("age") != REFERENCE_AGE, numbers
+
+    return sorted(records, key=place)
 
 
 def _table(card: MaterialCard, flags: Sequence[str]) -> list[str]:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
 from pipeline.core.errors import OutOfRange
+from pipeline.core.present import readable_record
 from pipeline.core.quantity import Quantity
 from pipeline.core.records import Bound, PropertyRecord
 
@@ -49,3 +51,20 @@ def test_a_limit_that_is_none_is_refused(
     message = f"handling_time of m: 43200 s cannot be its {bound} bound with the interval {said}"
     with pytest.raises(OutOfRange, match=f"^{message}$"):
         _record(interval, bound)
+
+
+@pytest.mark.parametrize(
+    ("interval", "bound", "text"),
+    [
+        ((43200.0, math.inf), "lower", ">= 12 h"),
+        ((43200.0, 46800.0), "interval", "12 to 13 h"),
+        ((40000.0, 46800.0), "exact", "12 h"),
+    ],
+)
+def test_a_limit_is_written_as_one(interval: tuple[float, float], bound: Bound, text: str) -> None:
+    assert readable_record(_record(interval, bound)) == text
+
+
+def test_a_limit_is_written_without_the_uncertainty_of_an_estimate() -> None:
+    known = replace(_record((43200.0, 46800.0), "interval"), quantity=Quantity(43200.0, "s", 36.0))
+    assert readable_record(known) == "12.000 to 13.000 h"

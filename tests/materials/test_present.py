@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import pytest
@@ -62,6 +63,12 @@ def test_what_all_values_share_is_told_once() -> None:
         "All values: age after cure, cure 2 h at 90 C",
     ]
     assert text.startswith("gel-a, card ")
+
+
+def test_values_stand_in_the_order_of_their_times() -> None:
+    values = tuple(modulus(conditions={"time_s": 3600.0 * hours}) for hours in (12, 6, 1))
+    text = card_text(card(records=values, laws=()))
+    assert re.findall(r"time since mixing (\d+ h)", text) == ["1 h", "6 h", "12 h"]
 
 
 def test_flags_are_numbered_by_name() -> None:

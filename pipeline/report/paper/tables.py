@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
 import re
 
-from pipeline.core.present import readable_record, scale_of
+from pipeline.core.present import readable_record
 from pipeline.core.properties import REFERENCE_AGE
 from pipeline.core.records import Condition
 from pipeline.core.units import to_si
@@ -58,10 +57,7 @@ def viscosity_then(database: Database, name: str) -> tuple[str, str]:
     def question(card: MaterialCard) -> tuple[str, str]:
         where = _bed(card, bed_C)
         record = card.record(VISCOSITY_THEN, **where)
-        high = record.ci95[1]
         text = readable_record(record)
-        if math.isfinite(high):
-            text += f", to {scale_of(record.quantity).with_number(high)}"
         if "rate_per_s" in record.conditions:
             text += f" at {record.conditions['rate_per_s']:.3g} 1/s"
         return text, "; ".join(flag.detail for flag in record.flags)
