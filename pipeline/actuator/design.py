@@ -44,7 +44,7 @@ from pipeline.materials.card import MaterialCard
 
 Bound: TypeAlias = Literal["given", "breakdown", "pull-in"]
 
-_POINTS = 24
+_POINTS = 60  # of the curves against voltage: the part that breaks down is steep
 _DRAWS = 20_000
 _PLANNED = 10  # specimens
 
