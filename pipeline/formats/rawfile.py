@@ -31,10 +31,12 @@ class Head(list[str]):
     Parameters
     ----------
     lines : without their line ends
+    size : bytes of the file in which they were looked for; 0 where these did not hold them whole
     """
 
-    def __init__(self, lines: list[str]) -> None:
+    def __init__(self, lines: list[str], size: int = 0) -> None:
         super().__init__(lines)
+        self.size = size
         self.rows = _count_rows(lines)  # of plain numbers, at the end
         self._answers: dict[object, object] = {}
 
@@ -77,7 +79,7 @@ def whole_file(path: Path) -> bytes:
         return file.read()
 
 
-# Header, separators of the rows below, where they end at the latest in another file, and the head.
+# Header, separators of the rows below, the byte at which they end at the latest, and the head.
 _SEEN: deque[tuple[bytes, bytes, int, Head]] = deque(maxlen=_HEADERS)
 
 
@@ -176,15 +178,17 @@ class RawFile:
                 if below.startswith(separators):
                     return head
         head = self.head
-        if head.rows >= _ROWS_BELOW:
+        if head.rows >= _ROWS_BELOW and head.size:
             first, end = self.offset(len(head) - head.rows), self.offset(len(head))
             separators = self.body[first:end].translate(None, _NUMBERS)
-            _SEEN.appendleft((self.body[:first], separators, 2 * end - first, head))
+            reach = min(2 * end - first, head.size)  # longer numbers than these are asked again
+            _SEEN.appendleft((self.body[:first], separators, reach, head))
         return head
 
     def _first_lines(self, lines: int, size: int) -> Head:
         text = self.body[:size].decode("utf-8", "replace").split("\n", lines)
-        return Head([line.rstrip("\r") for line in text[:lines]])
+        whole = len(text) > lines  # the last of them has its end
+        return Head([line.rstrip("\r") for line in text[:lines]], size if whole else 0)
 
     def decimal_mark(self, line: int) -> str:
         """Give the decimal mark of rows not separated by commas: point, unless a comma is first.

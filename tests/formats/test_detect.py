@@ -153,6 +153,20 @@ def test_heads_with_the_same_header_share_what_was_found_out() -> None:
     assert asked == ["0.5,-0.003", "0.5,-0.003", "0.5,-0.003"]
 
 
+@pytest.mark.parametrize("rows", [9, 10, 13, 14, 40])
+@pytest.mark.parametrize("longest", [1, 150])
+def test_a_remark_among_the_first_lines_is_seen_whatever_was_read_before(
+    rows: int, longest: int
+) -> None:
+    def remarked(head: Head) -> bool:
+        return "stopped" in head
+
+    table = [f"header {rows} {longest}", "s,mm", *["0." + "5" * longest + ",1"] * rows]
+    for lines in ([], ["stopped"], ["0.5,1"] * 60):
+        file = RawFile("x", "\n".join([*table, *lines, ""]).encode())
+        assert file.once(remarked) == remarked(file.head)
+
+
 def test_offsets_find_the_line() -> None:
     file = RawFile("x", b"\xef\xbb\xbfab\nc\n")
     assert [file.offset(line) for line in range(4)] == [0, 3, 5, 5]
