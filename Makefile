@@ -28,8 +28,9 @@ chart: $(VENV)/.dev  ## draw accuracy against speed of all estimators (simulated
 stability: $(VENV)/.dev  ## map where estimators hold, flag, refuse or are silently wrong (simulated)
 	@$(BIN)/python -m benchmarks.stability
 
-docs: $(VENV)/.dev  ## write docs/benchmarks.md and the pictures of docs/methods anew
+docs: $(VENV)/.dev  ## write docs/benchmarks.md, reading-speed.md and the pictures of docs/methods anew
 	@$(BIN)/python -m benchmarks.chart --docs && $(BIN)/python -m benchmarks.stability --docs
+	@$(BIN)/python -m benchmarks.read_and_fit --docs
 
 clean:  ## forget everything that can be made again
 	rm -rf $(VENV) && find processed -mindepth 1 ! -name README.md -delete

@@ -29,8 +29,8 @@ unless another is clearly faster (10 %) and as right, or clearly more right (1 %
 Batches are measured but compete with nobody, nor does who is too slow for all samples. What is
 refused, or does not converge, is counted in a column of its own and enters no error.
 
-Speed of reading and fitting whole files: `make bench`. Where methods fail: the maps in
-[methods/](methods), drawn by `make stability`.
+Speed of reading and fitting whole files: [reading-speed.md](reading-speed.md). Where methods fail:
+the maps in [methods/](methods), drawn by `make stability`.
 """
 
 _COLUMNS = (

@@ -7,7 +7,8 @@ of the bytes, which no rival takes but every origin of a number needs; the whole
 (toe, budgets, flags); pandas with the textbook formula and its naive standard error; pandas with
 lmfit; and merely reading and hashing the bytes. It prints their times (undisturbed, see
 `benchmarks.timing`, and of the median round) and the ratios of the undisturbed ones, the peak
-memory of the project's own way, and the time of `deamat all` when there is nothing to do.
+memory of the project's own way, and the time of `deamat all` when there is nothing to do. `--docs`
+writes `docs/reading-speed.md` as well.
 """
 
 from __future__ import annotations
@@ -36,6 +37,7 @@ from benchmarks.campaign import (
     find_curves,
     write_campaign,
 )
+from benchmarks.reading_page import PAGE, write_reading_page
 from benchmarks.timing import (
     Row,
     interleaved,
@@ -318,6 +320,8 @@ def main() -> int:
             whole.append((what, statistics.median(times), _NOTHING_TO_DO_TARGET_s))
     lines = judged(rows, whole)
     print(*lines, sep="\n")
+    if options.docs:
+        write_reading_page(rows, lines)
     if whole:
         names = ("measured", "value", "less than")
         write_results(
@@ -332,8 +336,12 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--rows", type=int, default=2000, help="samples in each file")
     parser.add_argument("--rounds", type=int, default=9)
     parser.add_argument("--only", nargs="+", choices=list(CONTENDERS), default=list(CONTENDERS))
+    parser.add_argument("--docs", action="store_true", help=f"write {PAGE} as well")
     parser.add_argument("--peak-memory-of", type=Path, metavar="CAMPAIGN", help=argparse.SUPPRESS)
-    return parser.parse_args()
+    options = parser.parse_args()
+    if options.docs and set(options.only) != set(CONTENDERS):
+        parser.error("--docs tells of every contender; leave --only out")
+    return options
 
 
 if __name__ == "__main__":
