@@ -28,7 +28,7 @@ from pipeline.core.register import read_register
 from pipeline.core.technique import Context, Technique
 from pipeline.formats.detect import detect
 from pipeline.formats.rawfile import RawFile
-from pipeline.run.measure import in_order, needed
+from pipeline.run.measure import in_order, needs_met
 from pipeline.techniques import TECHNIQUES
 from pipeline.twin.campaign import NAME, PARTS
 from pipeline.twin.truth import true_viscosities
@@ -163,8 +163,8 @@ def _measure(
 ) -> Measurement:
     config = _config()
     _, machine = config.instruments.machine(specimen.notes.get("instrument", ""))
-    needs = {key: needed(key, specimen, records) for key in technique.needs}
-    found = {key: quantity for key, quantity in needs.items() if quantity is not None}
+    given = records.get((specimen.campaign, specimen.material), [])
+    found = needs_met(technique, specimen, given)
     recording = None
     if specimen.file is not None:
         raw = RawFile(specimen.file, files[specimen.file.partition("/")[2]])

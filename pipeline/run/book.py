@@ -86,6 +86,10 @@ class Book:
         """Give what was made of a subject in an earlier run."""
         return pickle.loads(self.state.result(stage, subject))
 
+    def earlier(self, stage: str, subject: str) -> Any:
+        """Give what was made of a subject in an earlier run, None where nothing was."""
+        return self.result(stage, subject) if subject in self._known(stage) else None
+
     def close(self) -> None:
         """Forget every subject that this run did not ask for, and note what went."""
         for stage in {*self._asked, *(row[0] for row in self.state.db.execute(

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from pipeline.core.present import readable_conditions
 from pipeline.core.records import Measurement, Summary
+from pipeline.run.book import STALE
 from pipeline.run.measure import Bench, Group
 from pipeline.techniques import TECHNIQUES
 
@@ -42,7 +43,7 @@ def figure_jobs(
     """List every figure with the components it depends on."""
     synthetic = {s.campaign.name: s.campaign.info.synthetic for s in bench.surveys if s.campaign}
     for g in groups:
-        if TECHNIQUES[g.technique].figure is None or (not bench.dry and g.summary is None):
+        if TECHNIQUES[g.technique].figure is None or (g.summary is None and g.key != STALE):
             continue
         said = readable_conditions(dict(g.conditions)) if g.conditions else ""
         slug = "-".join(

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from graphlib import TopologicalSorter
+from typing import TypeVar
 
 from pipeline.core.config import Config
 from pipeline.core.config import digest as config_digest
@@ -26,13 +27,14 @@ SPINE_VERSION = 1
 
 _READERS = {form.name: form.version for form in FORMATS}
 
+E = TypeVar("E", PropertyRecord, Law)
 Progress = Callable[[str, int, int], None]
 Chunks = Callable[[Sequence[Sequence[Task]]], Iterable[list[Reduced]]]
 
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """One specimen, the key of what it was made from, and what came of it (None in a dry run)."""
+    """One specimen, the key of what it was made from, and what came of it (None if stale yet)."""
 
     specimen: Specimen
     key: str
@@ -60,7 +62,14 @@ class Group:
 
 @dataclass
 class Bench:
-    """What measuring needs at hand."""
+    """What measuring needs at hand.
+
+    Parameters
+    ----------
+    records, laws : by campaign and material, of the techniques that came before
+    stale : those among them that a dry run only knows from an earlier run
+    unmade : campaign, material and key of what there will be, and a dry run knows nothing of
+    """
 
     folders: Folders
     config: Config
@@ -71,6 +80,16 @@ class Bench:
     dry: bool
     records: dict[tuple[str, str], list[PropertyRecord]] = field(default_factory=dict)
     laws: dict[tuple[str, str], list[Law]] = field(default_factory=dict)
+    stale: list[PropertyRecord | Law] = field(default_factory=list)
+    unmade: set[tuple[str, str, str]] = field(default_factory=set)
+
+    def sure(self, entries: Iterable[E]) -> list[E]:
+        """Keep the records or laws that a dry run knows to be as they will be."""
+        return [entry for entry in entries if all(entry is not one for one in self.stale)]
+
+    def awaits(self, place: tuple[str, str], technique: Technique) -> bool:
+        """Say whether a dry run knows nothing yet of something that a technique needs."""
+        return any((*place, key) in self.unmade for key in technique.needs)
 
 
 def in_order(techniques: Mapping[str, Technique]) -> list[Technique]:
@@ -89,7 +108,7 @@ def measure(technique: Technique, bench: Bench) -> list[Measured]:
     measured = []
     for (subject, parts, task), good in zip(tasks, fresh, strict=True):
         if good:
-            reduced = None if bench.dry else bench.book.result("measurement", subject)
+            reduced = bench.book.result("measurement", subject)
             measured.append(Measured(task.specimen, key_of(parts), reduced))
         elif bench.dry:
             measured.append(Measured(task.specimen, STALE, None))
@@ -119,14 +138,22 @@ def summarise(technique: Technique, measured: Sequence[Measured], bench: Bench) 
             "spine": str(SPINE_VERSION),
             **{f"specimen {m.specimen.id}": m.key for m in members},
         }
-        laws = _laws(technique, bench.laws.get((campaign, material), ()))
-        if laws:
+        place = (campaign, material)
+        given = bench.laws.get(place, [])
+        laws = _laws(technique, given)
+        if bench.awaits(place, technique) or _laws(technique, bench.sure(given)) != laws:
+            parts["laws"] = STALE
+        elif laws:
             parts["laws"] = digest(sorted(laws.items()))
         if bench.book.fresh("summary", bare.subject, parts):
-            summary = None if bench.dry else bench.book.result("summary", bare.subject)
+            summary = bench.book.result("summary", bare.subject)
             key = key_of(parts)
         elif bench.dry:
-            summary, key = None, STALE
+            summary, key = bench.book.earlier("summary", bare.subject), STALE
+            if summary:
+                bench.stale += [*summary.records, *summary.laws]
+            else:
+                bench.unmade |= {(*place, property_) for property_ in technique.yields}
         else:
             summary = (
                 technique.summarise(good, Context(config, Machine(), {}, laws=laws))
@@ -136,8 +163,8 @@ def summarise(technique: Technique, measured: Sequence[Measured], bench: Bench) 
             key = bench.book.keep("summary", bare.subject, parts, summary)
         result.append(Group(campaign, material, technique.key, conditions, key, good, summary))
         if summary:
-            bench.records.setdefault((campaign, material), []).extend(summary.records)
-            bench.laws.setdefault((campaign, material), []).extend(summary.laws)
+            bench.records.setdefault(place, []).extend(summary.records)
+            bench.laws.setdefault(place, []).extend(summary.laws)
     return result
 
 
@@ -156,8 +183,11 @@ def _tasks(technique: Technique, bench: Bench) -> Iterator[tuple[str, dict[str, 
                 continue
             entry = survey.entries[specimen.file] if specimen.file else None
             name, machine = bench.config.instruments.machine(specimen.notes.get("instrument", ""))
-            needs = {key: needed(key, specimen, bench.records) for key in technique.needs}
-            found = {key: q for key, q in needs.items() if q is not None}
+            place = (specimen.campaign, specimen.material)
+            given = bench.records.get(place, [])
+            found = needs_met(technique, specimen, given)
+            sure = needs_met(technique, specimen, bench.sure(given))
+            awaited = bench.awaits(place, technique) or sure != found
             info = survey.campaign.info
             task = Task(
                 bench.folders.raw, specimen, Context(config, machine, found, info.timezone),
@@ -173,7 +203,7 @@ def _tasks(technique: Technique, bench: Bench) -> Iterator[tuple[str, dict[str, 
                 "config": config_digest(config),
                 "instrument": f"{name}:{config_digest(machine)}",
                 "campaign": digest((info.ends_open, info.timezone, survey.stated_units)),
-                "needs": digest(sorted(found.items())),
+                "needs": STALE if awaited else digest(sorted(found.items())),
                 "spine": f"{SPINE_VERSION} on Python {platform.python_version()}",
                 "reader": "none",
             }  # fmt: skip
@@ -193,15 +223,20 @@ def _reader(name: str) -> str:
     return f"{name}@{_READERS[name]}" if name in _READERS else "none"
 
 
-def needed(
-    key: str, specimen: Specimen, records: Mapping[tuple[str, str], list[PropertyRecord]]
-) -> Quantity | None:
-    """Find what a technique needs of its material: same campaign, same age, else the usual age."""
+def needs_met(
+    technique: Technique, specimen: Specimen, records: Sequence[PropertyRecord]
+) -> dict[str, Quantity]:
+    """Find what a technique needs among the records of its material and campaign."""
+    needs = {key: _needed(key, specimen, records) for key in technique.needs}
+    return {key: quantity for key, quantity in needs.items() if quantity is not None}
+
+
+def _needed(key: str, specimen: Specimen, records: Sequence[PropertyRecord]) -> Quantity | None:
+    """Find what a technique needs of its material: at the same age, else at the usual one."""
     age = REFERENCE_AGE
     if "age" in specimen.conditions:
         age = str(specimen.conditions["age"])
-    place = (specimen.campaign, specimen.material)
-    found = [r for r in records.get(place, ()) if r.key == key]
+    found = [r for r in records if r.key == key]
     same = [r for r in found if "age" in r.conditions and r.conditions["age"] == age] or found
     return same[0].quantity if len(same) == 1 else None
 

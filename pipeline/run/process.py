@@ -57,7 +57,7 @@ def process(
     seen : every input, as `look` lists it
     workers : processes at most; 1 works in this one
     verify : hash every input again, whatever its time of change
-    dry : only find out what is stale and why; nothing is read, made or published
+    dry : only find out what is stale and why; no file is read, nothing made or published
 
     Raises
     ------

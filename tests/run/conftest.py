@@ -49,23 +49,44 @@ def quick_figures(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def small_campaign(folder: Path) -> None:
     """Write and register a campaign with the first three fresh specimens of two materials."""
-    (folder / "compression").mkdir(parents=True)
-    shutil.copy(TWIN / "campaign.toml", folder)
-    with (TWIN / "compression" / "specimens.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = _rows("compression/specimens.csv")
     kept = []
     for material in MATERIALS:
         mine = [r for r in rows if r["material"] == material and r["age"] == "after cure"]
         kept += mine[:3]
-    for row in kept:
-        target = folder / "compression" / row["file"]
-        target.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(TWIN / "compression" / row["file"], target)
-    with (folder / "compression" / "specimens.csv").open("w", newline="") as file:
-        writer = csv.DictWriter(file, list(kept[0]))
-        writer.writeheader()
-        writer.writerows(kept)
+    _copy(kept, folder, "compression/specimens.csv")
     register(folder.parent, folder.name, accept=True)
+
+
+def all_of_one_material(folder: Path, material: str) -> None:
+    """Write and register a campaign with everything that was measured on one material."""
+    for path in sorted(TWIN.glob("*/*.csv")):
+        name = path.relative_to(TWIN).as_posix()
+        mine = [row for row in _rows(name) if row["material"] == material]
+        if mine:
+            _copy(mine, folder, name)
+    register(folder.parent, folder.name, accept=True)
+
+
+def _rows(name: str) -> list[dict[str, str]]:
+    with (TWIN / name).open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def _copy(rows: list[dict[str, str]], folder: Path, name: str) -> None:
+    """Write a register of some rows of the twin, and copy the files that it names."""
+    place = folder / Path(name).parent
+    place.mkdir(parents=True)
+    shutil.copy(TWIN / "campaign.toml", folder)
+    for row in rows:
+        if "file" in row:
+            target = place / row["file"]
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(TWIN / Path(name).parent / row["file"], target)
+    with (folder / name).open("w", newline="") as file:
+        writer = csv.DictWriter(file, list(rows[0]))
+        writer.writeheader()
+        writer.writerows(rows)
 
 
 def curves(folders: Folders) -> list[Path]:

@@ -10,7 +10,7 @@ import pytest
 from pipeline.run import explain
 from pipeline.run.folders import Folders
 from pipeline.run.register import register
-from tests.run.conftest import curves, run
+from tests.run.conftest import all_of_one_material, curves, run
 
 pytestmark = pytest.mark.usefixtures("quick_figures")
 
@@ -55,6 +55,29 @@ def test_a_touched_file_is_no_change(folders: Folders) -> None:
     run(folders)
     os.utime(curves(folders)[0], ns=(1, 1))
     assert _redone(folders) == set()
+
+
+@pytest.mark.parametrize(("age", "row", "again"), [("after cure", 1, 5), ("2 months", -1, 0)])
+def test_what_another_technique_needs_is_foretold_with_it(
+    age: str, row: int, again: int, folders: Folders
+) -> None:
+    """Permittivity needs the modulus of its age, viscosity at the handling time a law."""
+    all_of_one_material(folders.raw / "other", "sylgard-184-10to1")
+    run(folders)
+    assert explain(folders)["now"] == []
+    for technique in ("compression", "viscosity"):
+        path = folders.raw / "other" / technique / "specimens.csv"
+        lines = path.read_text().splitlines(keepends=True)
+        assert technique == "viscosity" or age in lines[row]
+        del lines[row]
+        path.write_text("".join(lines))
+    register(folders.raw, "other", accept=True)
+    why = dict(line.split(": ", 1) for line in explain(folders)["now"])
+    assert why["summary other/handling/sylgard-184-10to1[temperature_K=295.15]"] == "laws is redone"
+    done = _redone(folders)
+    measured = {one for one in done if one.startswith("measurement other/permittivity")}
+    assert len(measured) == again
+    assert {why[one] for one in measured} == ({"needs is redone"} if again else set())
 
 
 def test_a_changed_file(folders: Folders) -> None:
