@@ -42,7 +42,7 @@ def choose(entries: Sequence[E], what: str, asked: Asked) -> E:
     if len(left) > 1 and "age" not in asked:
         left = [e for e in left if _stated(e, "age") == REFERENCE_AGE] or left
     if len(left) > 1:
-        raise MissingProperty(f"{len(left)} records of {what}; choose {_choices(left)}")
+        raise MissingProperty(f"{len(left)} records of {what}; choose {_choices(left, brief=True)}")
     return left[0]
 
 
@@ -83,9 +83,17 @@ def _said(conditions: Asked) -> str:
     return ", ".join(f"{name}={value!r}" for name, value in conditions.items())
 
 
-def _choices(entries: Sequence[PropertyRecord | Law]) -> str:
-    """List entries in the words with which they can be asked for."""
-    return " or ".join(f"({_said({'campaign': e.campaign, **e.conditions})})" for e in entries)
+def _choices(entries: Sequence[PropertyRecord | Law], *, brief: bool = False) -> str:
+    """List entries in the words with which they can be asked for; brief is what parts them."""
+    told: list[dict[str, Condition | None]] = [
+        {"campaign": e.campaign, **e.conditions} for e in entries
+    ]
+    if brief:
+        names = dict.fromkeys(name for one in told for name in one)
+        told = [{name: one.get(name) for name in names} for one in told]
+        same = {name for name in names if all(one[name] == told[0][name] for one in told)}
+        told = [{name: one[name] for name in names if name not in same} for one in told]
+    return " or ".join(f"({_said(one)})" for one in told)
 
 
 def refusal_reasons(refusals: Iterable[Refusal], key: str) -> list[str]:

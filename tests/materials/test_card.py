@@ -51,8 +51,7 @@ def test_several_records_at_the_reference_age_are_refused_with_the_choices() -> 
         card(records=(modulus(), other, aged()))["compressive_modulus"]
     assert str(caught.value) == (
         "2 records of compressive_modulus of gel-a; choose "
-        "(campaign='soft-2026', age='after cure', window=(0.0, 0.05)) or "
-        "(campaign='soft-2027', age='after cure', window=(0.0, 0.05))"
+        "(campaign='soft-2026') or (campaign='soft-2027')"
     )
     chosen = card(records=(modulus(), other, aged())).record(
         "compressive_modulus", campaign="soft-2027"
@@ -61,8 +60,12 @@ def test_several_records_at_the_reference_age_are_refused_with_the_choices() -> 
 
 
 def test_several_records_of_which_none_is_at_the_reference_age_are_refused() -> None:
-    with pytest.raises(MissingProperty, match=r"2 records of .* age='2 months'.* age='fresh'"):
+    with pytest.raises(MissingProperty) as caught:
         card(records=(aged(), aged(conditions={"age": "fresh"})))["compressive_modulus"]
+    assert str(caught.value) == (
+        "2 records of compressive_modulus of gel-a; choose "
+        "(age='2 months', window=(0.0, 0.05)) or (age='fresh', window=None)"
+    )
 
 
 def test_an_age_that_nobody_measured_names_those_there_are() -> None:
