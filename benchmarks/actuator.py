@@ -12,6 +12,7 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +23,7 @@ from pipeline.actuator.elastica import solve
 from pipeline.actuator.figure_of_merit import Unimorph, multilayer, single_layer
 from pipeline.actuator.ladder import NEGLECTS, Actuator, choose, errors, evaluate
 from pipeline.actuator.ranges import Reals
-from pipeline.actuator.stack import FIRST_LAYER_DOWN, Layer, Stack
+from pipeline.actuator.stack import FIRST_LAYER_DOWN, Layer, Role, Stack
 from pipeline.actuator.strain import VACUUM_PERMITTIVITY_F_m
 
 Floats = NDArray[np.float64]
@@ -55,8 +56,8 @@ def draw(count: int) -> Unimorph:
 
 
 def layers(unimorph: Unimorph) -> Stack:
-    def one(role: str, thickness_m: Reals, modulus_Pa: Reals) -> Layer:
-        return Layer(role, thickness_m, modulus_Pa, 0.01, 1030.0, PERMITTIVITY, POISSON_RATIO)  # type: ignore[arg-type]  # a role by any of its names
+    def one(role: Role, thickness_m: Reals, modulus_Pa: Reals) -> Layer:
+        return Layer(role, thickness_m, modulus_Pa, 0.01, 1030.0, PERMITTIVITY, POISSON_RATIO)
 
     u = unimorph
     electrode = one("electrode", u.electrode_thickness_m, u.electrode_modulus_Pa)
@@ -169,8 +170,13 @@ def strips() -> None:
     apart = np.hypot(found.tip_x_m[:40] - other[:, 0], found.tip_y_m[:40] - other[:, 1]).max()
     theirs = per_second(40, lambda: [by_scipy(load[i], turn[i]) for i in some], 2)
     for tolerance in (1e-6, 1e-9):
-        ours = per_second(STRIPS, lambda t=tolerance: solve(load, turn, math.pi / 2, 1.0, t), 3)  # type: ignore[misc]  # mypy cannot type the default
+        ours = per_second(STRIPS, partial(solve, load, turn, math.pi / 2, 1.0, tolerance), 3)
         line(f"elastica to {tolerance:.0e} L", ours, theirs, "scipy solve_bvp 1e-6", float(apart))
+
+
+def _twenty_times(work: Callable[[], object]) -> None:
+    for _ in range(20):
+        work()
 
 
 def ladder() -> None:
@@ -180,10 +186,10 @@ def ladder() -> None:
     print("\none design at a time: cost, and estimated error of the tip for strips of a length")
     print(f"{'rung':16}{'us':>8}" + "".join(f"{x * 1e3:>8.0f} mm" for x in lengths))
     for rung in NEGLECTS:
-        cost = 1e6 / per_second(20, lambda r=rung: [evaluate(ours[0], r) for _ in range(20)])  # type: ignore[misc]  # as above
+        cost = 1e6 / per_second(20, partial(_twenty_times, partial(evaluate, ours[0], rung)))
         found = "".join(f"{errors(a, 'tip')[rung]:11.1e}" for a in ours)
         print(f"{rung:16}{cost:8.0f}{found}")
-    cost = 1e6 / per_second(20, lambda: [choose(ours[1], 1e-3) for _ in range(20)])
+    cost = 1e6 / per_second(20, partial(_twenty_times, partial(choose, ours[1], 1e-3)))
     print(f"{'choose':16}{cost:8.0f}")
 
 

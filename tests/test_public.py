@@ -38,5 +38,6 @@ def test_reading_a_card_needs_no_heavy_library() -> None:
 
 
 def test_another_name_does_not_exist() -> None:
+    misspelt = "open_databse"
     with pytest.raises(AttributeError, match="module 'pipeline' has no attribute 'open_databse'"):
-        getattr(pipeline, "open_databse")  # noqa: B009 - the attribute does not exist statically
+        getattr(pipeline, misspelt)

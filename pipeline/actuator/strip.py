@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,7 +58,8 @@ class Strip:
 
     def moved(self, values: Mapping[str, Floats]) -> Strip:
         """Give the strip with arrays in place of some numbers, by field."""
-        return replace(self, **values)  # type: ignore[arg-type]  # none of them is `in_plane`
+        fields: dict[str, Any] = dict(values)  # by names that only a run knows
+        return replace(self, **fields)
 
     def weibull(self) -> tuple[Reals, Reals]:
         """Give scale and shape of the breakdown, or say that they are not known."""

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import math
 from functools import partial
+from typing import Any
 
 import numpy as np
 import pytest
@@ -212,8 +213,9 @@ def test_bad_input_is_refused() -> None:
         OutOfRange, match=r"^tolerance is 0; allowed is 1e-11 to 0\.01; it is a frac"
     ):
         solve(1.0, 1.0, 0.0, tolerance=0.0)
+    unknown: Any = "skip"
     with pytest.raises(OutOfRange, match=r"^unsettled is 'skip'; allowed are 'raise' and 'nan'$"):
-        solve(1.0, 1.0, 0.0, unsettled="skip")  # type: ignore[arg-type]  # the point of it
+        solve(1.0, 1.0, 0.0, unsettled=unknown)
     with pytest.raises(
         OutOfRange, match=r"^length_m is 50 m; allowed is 1e-06 to 10 m; lengths are"
     ):

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -159,11 +160,13 @@ def test_bad_input_is_refused() -> None:
         OutOfRange, match=r"^length_m is 20 m; allowed is 1e-06 to 10 m; lengths are"
     ):
         measured(20.0)
+    no_rung: Any = "best"
+    no_aim: Any = "force"
     with pytest.raises(
         OutOfRange, match=r"^rung is 'best'; allowed are planar, no electrodes, single"
     ):
-        evaluate(measured(0.02), "best")  # type: ignore[arg-type]  # the wrong word is the point
+        evaluate(measured(0.02), no_rung)
     with pytest.raises(OutOfRange, match=r"^aim is 'force'; allowed are 'tip' and 'curvature'$"):
-        errors(measured(0.02), "force")  # type: ignore[arg-type]  # the wrong word is the point
+        errors(measured(0.02), no_aim)
     with pytest.raises(FitRefused, match=r"buckles, snaps or is not resolved"):
         choose(replace(measured(0.05), orientation=STANDING), 1e-3)

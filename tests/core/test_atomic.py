@@ -122,8 +122,13 @@ def test_a_folder_that_fails_leaves_the_old_one(tmp_path: Path) -> None:
     place = tmp_path / "paper"
     with whole_folder(place) as folder:
         (folder / "page").write_text("old")
-    with pytest.raises(KeyboardInterrupt), whole_folder(place) as folder:  # noqa: PT012  # halfway
-        (folder / "page").write_text("new")
-        raise KeyboardInterrupt
+
+    def stop_halfway() -> None:
+        with whole_folder(place) as folder:
+            (folder / "page").write_text("new")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        stop_halfway()
     assert (place / "page").read_text() == "old"
     assert len(list(tmp_path.iterdir())) == 2

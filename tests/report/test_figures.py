@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -221,10 +222,15 @@ def test_one_material_can_be_drawn(tmp_path: Path) -> None:
 
 def test_curves_without_a_look_of_their_own_differ_in_colour_and_dash() -> None:
     with figure_style("x"):
-        _, axes = new_figure()
+        figure, axes = new_figure()
         curves(28)(axes)
-        looks = {(line.get_color(), str(line._dash_pattern)) for line in axes.lines}  # type: ignore[attr-defined]  # no public way to read the dashes back
-    assert len(looks) == 28
+        for line in axes.lines:
+            line.set_gid("curve")
+        drawn = BytesIO()
+        figure.savefig(drawn, format="svg")
+    styles = re.findall(r'<g id="curve">\s*<path [^>]*style="([^"]*)"', drawn.getvalue().decode())
+    assert len(styles) == 28
+    assert len(set(styles)) == 28
 
 
 def test_no_colour_is_lost_on_white() -> None:
