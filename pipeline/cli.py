@@ -195,6 +195,13 @@ def paper(raw: Path | None, config: Path | None, processed: Path | None, as_json
 @click.option(
     "--where", "-w", multiple=True, metavar="KEY=VALUE", help="a condition: age='2 months'"
 )
+@click.option(
+    "--card",
+    "cards",
+    multiple=True,
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="a card's file; with any, the database is not asked",
+)
 @click.option("--compare", is_flag=True, help="compare all compositions as well")
 @click.option("--pareto", is_flag=True, help="list what no other design beats as well")
 @click.option(
@@ -212,6 +219,7 @@ def design(
     voltage: str | None,
     probability: float | None,
     where: tuple[str, ...],
+    cards: tuple[Path, ...],
     compare: bool,
     pareto: bool,
     figures: Path | None,
@@ -225,7 +233,7 @@ def design(
 
     asked = Asked(
         name, de, passive, electrode, t_de, t_passive, voltage, probability,
-        dict(_pair(w) for w in where),
+        dict(_pair(w) for w in where), cards,
     )  # fmt: skip
     document, text = run_design(
         _where(raw, config, processed), asked, compare=compare, pareto=pareto, figures=figures

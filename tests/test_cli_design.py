@@ -52,6 +52,40 @@ def test_a_design_for_a_program_with_its_figures(processed: Path, tmp_path: Path
     assert all(Path(path).is_file() for path in document["figures"])
 
 
+@pytest.fixture(scope="module")
+def files(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+    """The cards of `cards()` as files, each behind its option."""
+    folder = tmp_path_factory.mktemp("cards")
+    words = []
+    for material, card in cards(synthetic=True).items():
+        (folder / f"{material}.json").write_bytes(card.to_json())
+        words += ["--card", str(folder / f"{material}.json")]
+    return words
+
+
+def test_cards_alone_give_the_design_of_their_database(
+    processed: Path, files: list[str], tmp_path: Path
+) -> None:
+    words = (*WANTED, "--t-de", "500um", "--compare")
+    by_cards = deamat(tmp_path / "nothing", *words, *files)
+    assert (by_cards.returncode, by_cards.stderr) == (0, "")
+    assert by_cards.stdout == deamat(processed, *words).stdout
+
+
+def test_a_card_that_is_not_there_or_twice_is_named(files: list[str], tmp_path: Path) -> None:
+    words = (*WANTED, "--t-de", "500um")
+    nowhere = tmp_path / "nothing"
+    for more, said in (
+        (files[:2], "none of the cards is of"),
+        ([*files, *files[:2]], "two of the cards are of one material"),
+        (["--card", str(nowhere)], "nothing: No such file"),
+    ):
+        done = deamat(nowhere, *words, *more)
+        assert done.returncode == 2
+        assert said in done.stderr
+        assert "Traceback" not in done.stderr
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [

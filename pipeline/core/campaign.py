@@ -77,6 +77,9 @@ def load_campaign(folder: Path) -> Campaign:
     except ValidationError as error:
         said = "; ".join(f"{'.'.join(map(str, e['loc']))}: {e['msg']}" for e in error.errors())
         raise RawFileError(
-            path, said, mend="a campaign declares title, laboratory, licence and synthetic"
+            path,
+            said,
+            mend="a campaign declares title, laboratory and licence as text, and whether its data "
+            "are simulated: `synthetic = false` for measurements",
         ) from error
     return Campaign(folder.name, folder, info)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -22,6 +22,7 @@ from pipeline.actuator.present import (
 )
 from pipeline.core.errors import ConfigError
 from pipeline.core.units import from_si, read_quantity
+from pipeline.materials.card import MaterialCard, read_card
 from pipeline.materials.database import open_database
 from pipeline.run.folders import Folders
 
@@ -39,6 +40,7 @@ class Asked:
     voltage: str | None
     probability: float | None
     where: Mapping[str, str]
+    cards: tuple[Path, ...] = ()
 
 
 def run_design(
@@ -53,12 +55,11 @@ def run_design(
     """
     declared = load_designs(folders.config)
     request = request_of(asked, declared)
-    with open_database(folders.processed) as database:
-        cards = {material: database[material] for material in database}
-        found = answer(database, declared, request)
-        document, text = design_document(found), design_text(found)
-        compared = compare_all(cards, declared, request) if compare or figures else None
-        front = pareto_front(cards, declared, request) if pareto or figures else None
+    cards = _cards(folders, asked.cards, (request.de, request.passive))
+    found = answer(cards, declared, request)
+    document, text = design_document(found), design_text(found)
+    compared = compare_all(cards, declared, request) if compare or figures else None
+    front = pareto_front(cards, declared, request) if pareto or figures else None
     simulated = {material for material, card in cards.items() if card.synthetic}
     marked = front is not None and any({t.de, t.passive} & simulated for t in front)
     if compare and compared is not None:
@@ -85,6 +86,25 @@ def run_design(
         document["figures"] = [str(path) for path in drawn]
         text += "\nFigures\n" + "".join(f"  {path}\n" for path in drawn)
     return document, text
+
+
+def _cards(
+    folders: Folders, files: Sequence[Path], wanted: Sequence[str]
+) -> dict[str, MaterialCard]:
+    """Give the cards of these files, or all of the database where there are none."""
+    if not files:
+        with open_database(folders.processed) as database:  # names the nearest of a wrong material
+            return {
+                material: database[material] for material in dict.fromkeys([*wanted, *database])
+            }
+    read = [read_card(file) for file in files]
+    cards = {card.material: card for card in read}
+    if len(cards) < len(read):
+        raise ConfigError(f"two of the cards are of one material: {', '.join(map(str, files))}")
+    for material in wanted:
+        if material not in cards:
+            raise ConfigError(f"none of the cards is of {material!r}; there is {', '.join(cards)}")
+    return cards
 
 
 def request_of(asked: Asked, declared: Designs) -> Request:
