@@ -17,6 +17,7 @@ test: $(VENV)/.dev  ## run the whole test suite
 	@$(BIN)/python -m pytest --numprocesses=auto --dist=loadfile
 
 check: $(VENV)/.dev  ## style, types and import contracts
+	@mkdir -p .link && ln -sfn ../pipeline .link/deamat
 	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy && $(BIN)/lint-imports
 
 bench: $(VENV)/.dev  ## measure speed against rivals (ratios in one run)
@@ -38,11 +39,11 @@ clean:  ## forget everything that can be made again
 $(VENV)/.runtime: pyproject.toml constraints.txt
 	@test -d $(VENV) || $(PYTHON) -m venv $(VENV)
 	@$(PIP) install -c constraints.txt setuptools
-	@$(PIP) install -c constraints.txt --no-build-isolation --config-settings editable_mode=compat -e .
+	@$(PIP) install -c constraints.txt --no-build-isolation -e .
 	@touch $@
 
 $(VENV)/.dev: $(VENV)/.runtime
-	@$(PIP) install -c constraints.txt --no-build-isolation --config-settings editable_mode=compat -e '.[dev,bench]'
+	@$(PIP) install -c constraints.txt --no-build-isolation -e '.[dev,bench]'
 	@touch $@
 
 help:  ## print this chain

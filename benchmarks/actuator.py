@@ -18,13 +18,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_bvp
 
-from pipeline.actuator.beam import actuate
-from pipeline.actuator.elastica import solve
-from pipeline.actuator.figure_of_merit import Unimorph, multilayer, single_layer
-from pipeline.actuator.ladder import NEGLECTS, Actuator, choose, errors, evaluate
-from pipeline.actuator.ranges import Reals
-from pipeline.actuator.stack import FIRST_LAYER_DOWN, Layer, Role, Stack
-from pipeline.actuator.strain import VACUUM_PERMITTIVITY_F_m
+from deamat.actuator.beam import actuate
+from deamat.actuator.elastica import solve
+from deamat.actuator.figure_of_merit import Unimorph, multilayer, single_layer
+from deamat.actuator.ladder import NEGLECTS, Actuator, choose, errors, evaluate
+from deamat.actuator.ranges import Reals
+from deamat.actuator.stack import FIRST_LAYER_DOWN, Layer, Role, Stack
+from deamat.actuator.strain import VACUUM_PERMITTIVITY_F_m
 
 Floats = NDArray[np.float64]
 BLOCK, BLOCKS, ONE_BY_ONE, STRIPS = 10_000, 20, 2000, 2000

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pipeline.core.records import FloatArray
+from deamat.core.arrays import FloatArray
 
 # The cylinder of ASTM D575 at 12 mm/min, sampled at 100 Hz.
 DIAMETER_m = 28.6e-3

@@ -22,16 +22,16 @@ import numpy as np
 
 from benchmarks.coverage_truth import NOT_ON_CARDS, LIMIT_Pas, liquid_at, table_of, truth_of
 from benchmarks.timing import write_results
-from pipeline.core.config import Config, load_config
-from pipeline.core.records import Law, Measurement, PropertyRecord, Specimen, Summary
-from pipeline.core.register import read_register
-from pipeline.core.technique import Context, Technique
-from pipeline.formats.detect import detect
-from pipeline.formats.rawfile import RawFile
-from pipeline.run.measure import in_order, needs_met
-from pipeline.techniques import TECHNIQUES
-from pipeline.twin.campaign import NAME, PARTS
-from pipeline.twin.truth import true_viscosities
+from deamat.core.config import Config, load_config
+from deamat.core.records import Law, Measurement, PropertyRecord, Specimen, Summary
+from deamat.core.register import read_register
+from deamat.core.technique import Context, Technique
+from deamat.formats.detect import detect
+from deamat.formats.rawfile import RawFile
+from deamat.run.measure import in_order, needs_met
+from deamat.techniques import TECHNIQUES
+from deamat.twin.campaign import NAME, PARTS
+from deamat.twin.truth import true_viscosities
 
 ROOT = Path(__file__).resolve().parents[1]
 FIRST_SEED = 100_000  # far from the committed campaign's

@@ -6,11 +6,12 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from pipeline.core.errors import MissingProperty
-from pipeline.core.properties import REFERENCE_AGE
-from pipeline.core.records import Condition, FloatArray, PropertyRecord
-from pipeline.twin.part import Part
-from pipeline.twin.truth import SECONDS_PER_HOUR, TrueViscosity, true_viscosities
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import MissingProperty
+from deamat.core.properties import REFERENCE_AGE
+from deamat.core.records import Condition, PropertyRecord
+from deamat.twin.part import Part
+from deamat.twin.truth import SECONDS_PER_HOUR, TrueViscosity, true_viscosities
 
 LIMIT_Pas = 3.5  # whose time is asked for: two of the liquids reach it between 1 h and 12 h
 

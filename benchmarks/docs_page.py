@@ -13,8 +13,8 @@ from PIL.PngImagePlugin import PngInfo
 
 from benchmarks.families.family import Family, default_of, number
 from benchmarks.timing import Row
-from pipeline.core.atomic import write_atomically
-from pipeline.report.style import MARK_MEANING
+from deamat.core.atomic import write_atomically
+from deamat.report.style import MARK_MEANING
 
 IMAGES = Path("docs/methods/img")
 _COLOURS = 128

@@ -18,7 +18,7 @@ from matplotlib.transforms import ScaledTranslation
 
 from benchmarks.families.family import Family, number
 from benchmarks.timing import Row
-from pipeline.report.style import (
+from deamat.report.style import (
     COLOURS,
     PAGE_WIDTH_in,
     figure_style,

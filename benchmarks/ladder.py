@@ -30,13 +30,13 @@ from benchmarks.timing import (
     undisturbed_s,
     write_results,
 )
-from pipeline.actuator.beam import Beam, actuate, weight
-from pipeline.actuator.ladder import NEGLECTS, Actuator, Aim, Answer, Rung, choose, evaluate
-from pipeline.actuator.ranges import Reals
-from pipeline.actuator.stack import FIRST_LAYER_DOWN, ON_EDGE, Layer, Orientation, Role, Stack
-from pipeline.actuator.strain import pull_in_voltage
-from pipeline.core.errors import FitRefused, OutOfRange
-from pipeline.report.style import (
+from deamat.actuator.beam import Beam, actuate, weight
+from deamat.actuator.ladder import NEGLECTS, Actuator, Aim, Answer, Rung, choose, evaluate
+from deamat.actuator.ranges import Reals
+from deamat.actuator.stack import FIRST_LAYER_DOWN, ON_EDGE, Layer, Orientation, Role, Stack
+from deamat.actuator.strain import pull_in_voltage
+from deamat.core.errors import FitRefused, OutOfRange
+from deamat.report.style import (
     COLOURS,
     PAGE_WIDTH_in,
     figure_style,

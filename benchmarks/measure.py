@@ -14,8 +14,8 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from benchmarks.timing import Row
-from pipeline.core.errors import FitRefused
-from pipeline.core.records import FloatArray
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
 
 Sample = TypeVar("Sample")
 

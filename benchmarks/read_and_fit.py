@@ -48,12 +48,13 @@ from benchmarks.timing import (
     wall_times_s,
     write_results,
 )
-from pipeline.core.instruments import Machine
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import FloatArray, Specimen
-from pipeline.core.technique import Context, Technique
-from pipeline.formats.format import Format
-from pipeline.formats.rawfile import RawFile, whole_file
+from deamat.core.arrays import FloatArray
+from deamat.core.instruments import Machine
+from deamat.core.quantity import Quantity
+from deamat.core.records import Specimen
+from deamat.core.technique import Context, Technique
+from deamat.formats.format import Format
+from deamat.formats.rawfile import RawFile, whole_file
 
 Fit = tuple[float, float]  # modulus and its standard uncertainty [Pa]
 Contender = Callable[[Curve], Fit | None]
@@ -65,7 +66,7 @@ _REFERENCES = ("ours", "ours, hashed", "ours, whole technique", "read and hash")
 _TARGETS = {"pandas + OLS": 2.0, "pandas + lmfit": 10.0}
 _MEMORY_TARGET_MB = 250.0
 _NOTHING_TO_DO_TARGET_s = 0.15
-_DEAMAT = (sys.executable, "-c", "import sys; from pipeline.cli import main; sys.exit(main())")
+_DEAMAT = (sys.executable, "-c", "import sys; from deamat.cli import main; sys.exit(main())")
 
 
 class _Unhashed(RawFile):
@@ -77,11 +78,11 @@ class _Unhashed(RawFile):
 def ours(form: type[RawFile] = _Unhashed) -> Contender:
     """Detect, read with all its strictness, make the curve and fit the slope of the window."""
     # By name, so that the rivals can be timed where these floors do not import.
-    detect: Callable[[RawFile], Format] = importlib.import_module("pipeline.formats.detect").detect
-    curves = importlib.import_module("pipeline.core.stress_strain")
-    estimators = importlib.import_module("pipeline.estimators.curve")
-    fit_line = importlib.import_module("pipeline.estimators.slope").fit_line
-    config = importlib.import_module("pipeline.techniques").TECHNIQUES["compression"].config()
+    detect: Callable[[RawFile], Format] = importlib.import_module("deamat.formats.detect").detect
+    curves = importlib.import_module("deamat.core.stress_strain")
+    estimators = importlib.import_module("deamat.estimators.curves.stress_strain")
+    fit_line = importlib.import_module("deamat.estimators.curves.slope").fit_line
+    config = importlib.import_module("deamat.techniques").TECHNIQUES["compression"].config()
     machine = Machine()
     height = Quantity(HEIGHT_m, "m", 1e-5, 1e-5)
     section = curves.circular_section({"diameter_m": Quantity(DIAMETER_m, "m", 1e-5, 1e-5)})
@@ -108,8 +109,8 @@ def ours_hashed() -> Contender:
 def ours_whole() -> Contender:
     """Detect, read and reduce with the whole technique, as a run does it."""
     # By name, so that the rivals can be timed where these floors do not import.
-    detect: Callable[[RawFile], Format] = importlib.import_module("pipeline.formats.detect").detect
-    techniques = importlib.import_module("pipeline.techniques").TECHNIQUES
+    detect: Callable[[RawFile], Format] = importlib.import_module("deamat.formats.detect").detect
+    techniques = importlib.import_module("deamat.techniques").TECHNIQUES
     technique: Technique = techniques["compression"]
     context = Context(technique.config(), Machine(), needs={})
     specimen = _specimen()
@@ -314,7 +315,7 @@ def main() -> int:
         rows = compare(curves, options.only, options.rounds)
         print(table(rows))
         write_results("read_and_fit", rows, ("numpy", "pandas", "lmfit"))
-        if importlib.util.find_spec("pipeline.cli") is not None and "ours" in options.only:
+        if importlib.util.find_spec("deamat.cli") is not None and "ours" in options.only:
             times = nothing_to_do_s(raw, Path(folder, "processed"))
             what = "deamat all with nothing to do, median [s]"
             whole.append((what, statistics.median(times), _NOTHING_TO_DO_TARGET_s))

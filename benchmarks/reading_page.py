@@ -9,7 +9,7 @@ from pathlib import Path
 
 from benchmarks.families.family import number
 from benchmarks.timing import Row
-from pipeline.core.atomic import write_atomically
+from deamat.core.atomic import write_atomically
 
 PAGE = Path("docs/reading-speed.md")
 _PACKAGES = ("numpy", "pandas", "lmfit", "pysimdjson")

@@ -19,7 +19,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.core.atomic import write_atomically
+from deamat.core.atomic import write_atomically
 
 Item = TypeVar("Item")
 Row = Mapping[str, str | float | int]

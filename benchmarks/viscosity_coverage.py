@@ -14,12 +14,13 @@ from dataclasses import replace
 import numpy as np
 
 from benchmarks.coverage_truth import truth_of, viscosity_at
-from pipeline.core.records import FloatArray, Law, Recording, Source, Specimen
-from pipeline.core.technique import Context
-from pipeline.techniques import viscosity
-from pipeline.techniques.viscosity.config import ViscosityConfig
-from pipeline.twin.truth import TrueViscosity, true_viscosities
-from pipeline.twin.viscosity import (
+from deamat.core.arrays import FloatArray
+from deamat.core.records import Law, Recording, Source, Specimen
+from deamat.core.technique import Context
+from deamat.techniques import viscosity
+from deamat.techniques.viscosity.config import ViscosityConfig
+from deamat.twin.truth import TrueViscosity, true_viscosities
+from deamat.twin.viscosity import (
     BATCHES,
     VISCOMETER,
     SimulatedRun,

@@ -13,17 +13,17 @@ from collections.abc import Callable
 
 import numpy as np
 
-from benchmarks.timing import Row, stay_on_one_core, table, write_results
-from pipeline.estimators.weibull import fit, fit_batch
-from pipeline.estimators.weibull_conditional import condition
-from pipeline.estimators.weibull_intervals import Interval, infer
-from pipeline.estimators.weibull_rivals import (
+from benchmarks.rivals.weibull import (
     RivalIntervals,
     bootstrap_intervals,
     likelihood_ratio_intervals,
     wald_intervals,
 )
-from pipeline.estimators.weibull_sample import FloatArray
+from benchmarks.timing import Row, stay_on_one_core, table, write_results
+from deamat.core.arrays import FloatArray
+from deamat.estimators.weibull.conditional import condition
+from deamat.estimators.weibull.fit import fit, fit_batch
+from deamat.estimators.weibull.intervals import Interval, infer
 
 _SCALE, _SHAPE = 97.0, 8.0
 _B1 = float(_SCALE * (-np.log(0.99)) ** (1 / _SHAPE))

@@ -1,5 +1,5 @@
-"""`python -m pipeline` is the command `deamat`."""
+"""`python -m deamat` is the command `deamat`."""
 
-from pipeline.cli import main
+from deamat.cli import main
 
 main()

@@ -10,9 +10,9 @@ from typing import Any, TypeVar
 
 import click
 
-from pipeline import __version__
-from pipeline.core.errors import ConfigError, PipelineError
-from pipeline.run.folders import Folders
+from deamat import __version__
+from deamat.core.errors import ConfigError, PipelineError
+from deamat.run.folders import Folders
 
 WELL, REJECTED, WRONG = 0, 1, 2
 
@@ -78,7 +78,7 @@ def all_(
     verify: bool,
 ) -> None:
     """Reprocess raw/ into processed/: only what changed is done again."""
-    from pipeline.run import run_all, summary
+    from deamat.run import run_all, summary
 
     folders = _where(raw, config, processed)
     document = run_all(folders, workers, _silent if as_json else _progress(), verify)
@@ -96,7 +96,7 @@ def all_(
 @_json
 def explain(raw: Path | None, config: Path | None, processed: Path | None, as_json: bool) -> None:
     """Say what a run would redo now and why, and what the last run redid."""
-    from pipeline.run import explain as explain_run
+    from deamat.run import explain as explain_run
 
     said = explain_run(_where(raw, config, processed))
     if as_json:
@@ -113,8 +113,8 @@ def explain(raw: Path | None, config: Path | None, processed: Path | None, as_js
 @_json
 def audit(raw: Path | None, config: Path | None, processed: Path | None, as_json: bool) -> None:
     """Hash every raw file again and account for each of them exactly once."""
-    from pipeline.run.audit import audit as audit_run
-    from pipeline.run.audit import audit_text
+    from deamat.run.audit import audit as audit_run
+    from deamat.run.audit import audit_text
 
     document = audit_run(_where(raw, config, processed))
     click.echo(json.dumps(document, indent=1) if as_json else audit_text(document))
@@ -129,8 +129,8 @@ def card(
     material: str, raw: Path | None, config: Path | None, processed: Path | None, as_json: bool
 ) -> None:
     """Show the card of MATERIAL."""
-    from pipeline.materials.database import open_database
-    from pipeline.materials.present import card_text
+    from deamat.materials.database import open_database
+    from deamat.materials.present import card_text
 
     with open_database(_where(raw, config, processed).processed) as database:
         found = database[material]
@@ -156,8 +156,8 @@ def trace(
     as_json: bool,
 ) -> None:
     """Show the chain from PROPERTY of MATERIAL back to the raw bytes."""
-    from pipeline.materials.database import open_database
-    from pipeline.materials.trace import trace as trace_value
+    from deamat.materials.database import open_database
+    from deamat.materials.trace import trace as trace_value
 
     conditions = dict(_pair(w) for w in where)
     with open_database(_where(raw, config, processed).processed) as database:
@@ -170,8 +170,8 @@ def trace(
 @_json
 def paper(raw: Path | None, config: Path | None, processed: Path | None, as_json: bool) -> None:
     """Write the article's tables and figures, printed beside recomputed, into processed/paper/."""
-    from pipeline.report.paper.entry import to_json
-    from pipeline.report.paper.write import write_paper
+    from deamat.report.paper.entry import to_json
+    from deamat.report.paper.write import write_paper
 
     page, entries = write_paper(_where(raw, config, processed).processed)
     if as_json:
@@ -229,7 +229,7 @@ def design(
     as_json: bool,
 ) -> None:
     """Design an actuator: NAME of config/designs.toml, or options; options win."""
-    from pipeline.run.design import Asked, run_design
+    from deamat.run.design import Asked, run_design
 
     asked = Asked(
         name, de, passive, electrode, t_de, t_passive, voltage, probability,
@@ -249,7 +249,7 @@ def register(
     campaign: str, raw: Path | None, config: Path | None, processed: Path | None, accept: bool
 ) -> None:
     """Write or extend the manifest of CAMPAIGN: the one command that writes into raw/."""
-    from pipeline.run.register import register as register_campaign
+    from deamat.run.register import register as register_campaign
 
     result = register_campaign(_where(raw, config, processed).raw, campaign, accept)
     click.echo(result.text)
@@ -261,7 +261,7 @@ def register(
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), required=True)
 def simulate(seed: int, out: Path) -> None:
     """Write a SYNTHETIC campaign into --out, a folder for --raw; its truth into OUT.truth.json."""
-    from pipeline.twin.campaign import simulate as simulate_campaign
+    from deamat.twin.campaign import simulate as simulate_campaign
 
     out = out.resolve()
     truth = out.with_name(f"{out.name}.truth.json")

@@ -6,12 +6,12 @@ import re
 
 import pytest
 
-from pipeline.core.errors import RawFileError
-from pipeline.formats import FORMATS
-from pipeline.formats.detect import detect
-from pipeline.formats.format import Format
-from pipeline.formats.rawfile import RawFile
-from pipeline.techniques import TECHNIQUES
+from deamat.core.errors import RawFileError
+from deamat.formats import FORMATS
+from deamat.formats.detect import detect
+from deamat.formats.format import Format
+from deamat.formats.rawfile import RawFile
+from deamat.techniques import TECHNIQUES
 from tests.formats.samples import BY_NAME
 from tests.run.conftest import ROOT
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.run.folders import Folders
+from deamat.run.folders import Folders
 from tests.run.conftest import curves, folders
 
 __all__ = ["folders"]
@@ -19,7 +19,7 @@ HEAVY = ("numpy", "scipy", "pandas", "pydantic", "h5py", "matplotlib", "simdjson
 
 def deamat(folders: Folders, *words: str) -> subprocess.CompletedProcess[str]:
     places = ("--raw", folders.raw, "--config", folders.config, "--processed", folders.processed)
-    command = [sys.executable, "-m", "pipeline", *words, *map(str, places)]
+    command = [sys.executable, "-m", "deamat", *words, *map(str, places)]
     return subprocess.run(command, capture_output=True, text=True, check=False, cwd=folders.raw)
 
 
@@ -82,9 +82,9 @@ def test_a_run_with_nothing_to_do_imports_nothing_heavy(folders: Folders) -> Non
     program = (
         "import sys\n"
         "from pathlib import Path\n"
-        "from pipeline.cli import cli\n"
-        "from pipeline.run import run_all\n"
-        "from pipeline.run.folders import Folders\n"
+        "from deamat.cli import cli\n"
+        "from deamat.run import run_all\n"
+        "from deamat.run.folders import Folders\n"
         f"document = run_all(Folders(*map(Path, {places!r})), 1, print)\n"
         "assert document['nothing_to_do']\n"
         f"print([m for m in {HEAVY!r} if m in sys.modules])\n"

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.core.ledger import Provenance
-from pipeline.materials.database import DATABASE_FILE, write_database
+from deamat.core.ledger import Provenance
+from deamat.materials.database import DATABASE_FILE, write_database
 from tests.actuator.cards import ROOT, cards
 
 WANTED = ("--de", "soft", "--passive", "stiff", "--electrode", "pedot-triton")
@@ -26,7 +26,7 @@ def processed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def deamat(processed: Path, *words: str) -> subprocess.CompletedProcess[str]:
     places = ("--config", str(ROOT / "config"), "--processed", str(processed))
-    command = [sys.executable, "-m", "pipeline", "design", *words, *places]
+    command = [sys.executable, "-m", "deamat", "design", *words, *places]
     return subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT)
 
 

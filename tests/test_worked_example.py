@@ -11,10 +11,10 @@ from typing import Any
 
 import pytest
 
-import pipeline.run.draw
-from pipeline.run.draw import FigureJob
-from pipeline.run.folders import Folders
-from pipeline.twin.campaign import SEED, simulate
+import deamat.run.draw
+from deamat.run.draw import FigureJob
+from deamat.run.folders import Folders
+from deamat.twin.campaign import SEED, simulate
 from tests.run.conftest import ROOT, run
 
 PAGE = ROOT / "docs" / "worked-example.md"
@@ -35,7 +35,7 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
             path.write_text("SYNTHETIC")
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(pipeline.run.draw, "draw_one", no_pictures)
+        patch.setattr(deamat.run.draw, "draw_one", no_pictures)
         document = run(Folders(folder / "raw", folder / "config", folder / "processed"))
     assert document["exit_code"] == 0
     return folder

@@ -10,12 +10,12 @@ import numpy as np
 
 from benchmarks.families.family import Family, default_of, named, number
 from benchmarks.measure import Answer, Contender, is_there, run, statistics
+from benchmarks.rivals import polynomial as polynomial_rivals
 from benchmarks.timing import Row
-from pipeline.core.errors import FitRefused
-from pipeline.core.records import FloatArray
-from pipeline.estimators import polynomial_rivals
-from pipeline.estimators.mean import coverage_factor
-from pipeline.estimators.polynomial import fit_polynomial
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
+from deamat.estimators.least_squares.polynomial import fit_polynomial
+from deamat.estimators.mean import coverage_factor
 
 Series = tuple[FloatArray, FloatArray, int]
 Pair = tuple[FloatArray, FloatArray]  # raw coefficients and their standard errors

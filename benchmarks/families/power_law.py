@@ -8,12 +8,12 @@ import numpy as np
 
 from benchmarks.families.family import Family, default_of, named, number
 from benchmarks.measure import Answer, Contender, is_there, measured_rows
+from benchmarks.rivals import power_law as rivals
 from benchmarks.timing import Row
-from pipeline.core.errors import FitRefused
-from pipeline.core.records import FloatArray
-from pipeline.estimators import power_law_rivals as rivals
-from pipeline.estimators.mean import coverage_factor
-from pipeline.estimators.power_law import ErrorModel, fit_power_law
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
+from deamat.estimators.least_squares.power_law import ErrorModel, fit_power_law
+from deamat.estimators.mean import coverage_factor
 
 Readings = tuple[FloatArray, FloatArray, FloatArray]
 # Sylgard 186 (10:1), Sikulskyi et al. 2022, Table 2, the printed exponent read as n: n - 1 here.

@@ -8,11 +8,11 @@ import numpy as np
 
 from benchmarks.families.family import Family, default_of, named, number
 from benchmarks.measure import Answer, Contender, is_there, measured_rows
+from benchmarks.rivals import slope as slope_rivals
 from benchmarks.timing import Row
-from pipeline.core.records import FloatArray
-from pipeline.estimators import slope_rivals
-from pipeline.estimators.mean import coverage_factor
-from pipeline.estimators.slope import fit_line
+from deamat.core.arrays import FloatArray
+from deamat.estimators.curves.slope import fit_line
+from deamat.estimators.mean import coverage_factor
 
 Curve = tuple[FloatArray, FloatArray]
 MODULUS_Pa = 0.3e6

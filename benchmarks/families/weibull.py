@@ -11,21 +11,21 @@ import numpy as np
 
 from benchmarks.families.family import Family, default_of, named, number
 from benchmarks.measure import Answer, Contender, is_there, measured_rows, statistics
-from benchmarks.timing import Row
-from benchmarks.weibull import conditional_bounds
-from benchmarks.weibull import samples as draw
-from pipeline.core.records import FloatArray
-from pipeline.estimators.weibull import fit, fit_batch, solve_shape
-from pipeline.estimators.weibull_intervals import infer
-from pipeline.estimators.weibull_lines import iec_62539, rank_regression
-from pipeline.estimators.weibull_rivals import (
+from benchmarks.rivals.weibull import (
     RivalIntervals,
     bootstrap_intervals,
     likelihood_ratio_intervals,
     wald_intervals,
 )
-from pipeline.estimators.weibull_sample import check_sample, log_samples, sample_warnings
-from pipeline.estimators.weibull_shape import modified_ratio, unbiased_shape
+from benchmarks.rivals.weibull_lines import iec_62539, rank_regression
+from benchmarks.timing import Row
+from benchmarks.weibull import conditional_bounds
+from benchmarks.weibull import samples as draw
+from deamat.core.arrays import FloatArray
+from deamat.estimators.weibull.fit import fit, fit_batch, solve_shape
+from deamat.estimators.weibull.intervals import infer
+from deamat.estimators.weibull.sample import check_sample, log_samples, sample_warnings
+from deamat.estimators.weibull.shape import modified_ratio, unbiased_shape
 
 SCALE, SHAPE = 97.0, 8.0
 N_POINT, N_INTERVAL = 20, 5

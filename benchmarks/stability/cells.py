@@ -14,7 +14,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from pipeline.core.records import FloatArray
+from deamat.core.arrays import FloatArray
 
 Verdict = Literal["within", "flagged", "refused", "SILENTLY WRONG"]
 

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
 from benchmarks.stability.cells import Cell, Estimator
-from pipeline.report.style import PAGE_WIDTH_in, figure_style, plain, save_figure, set_title
+from deamat.report.style import PAGE_WIDTH_in, figure_style, plain, save_figure, set_title
 
 _FACES = {
     "within": "#CFE8DC",

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from benchmarks.stability.cells import Draw, Estimator, Failure, Told
-from pipeline.core.records import FloatArray
-from pipeline.estimators.mean import mean_with_shared, outliers
+from deamat.core.arrays import FloatArray
+from deamat.estimators.mean import mean_with_shared, outliers
 
 Sample = tuple[FloatArray, float, float]  # values, own and shared uncertainty
 _SCATTER = 0.05

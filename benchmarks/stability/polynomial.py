@@ -8,14 +8,14 @@ import numpy as np
 
 from benchmarks.families.polynomial import QUARTIC
 from benchmarks.stability.cells import Draw, Estimator, Failure, Told, refused
-from pipeline.core.errors import FitRefused
-from pipeline.core.records import FloatArray
-from pipeline.estimators.fit import Fit
-from pipeline.estimators.lack_of_fit import outlying_points, residual_runs
-from pipeline.estimators.mean import coverage_factor
-from pipeline.estimators.monotone import fit_non_decreasing
-from pipeline.estimators.polynomial import PolynomialFit, fit_polynomial
-from pipeline.estimators.selection import choose
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
+from deamat.estimators.least_squares.fit import Fit
+from deamat.estimators.least_squares.lack_of_fit import outlying_points, residual_runs
+from deamat.estimators.least_squares.monotone import fit_non_decreasing
+from deamat.estimators.least_squares.polynomial import PolynomialFit, fit_polynomial
+from deamat.estimators.mean import coverage_factor
+from deamat.estimators.selection import choose
 
 Sample = tuple[FloatArray, FloatArray, int, FloatArray]  # x, y, degree, places asked about
 _ASKED_h = np.array([6.0, 11.9])

@@ -7,17 +7,17 @@ from collections.abc import Sequence
 import numpy as np
 
 from benchmarks.families.power_law import DEGREES, LAW
+from benchmarks.rivals.power_law import law
 from benchmarks.stability.cells import Draw, Estimator, Failure, Told, refused
 from benchmarks.stability.polynomial import fit_flags
-from pipeline.core.errors import FitRefused
-from pipeline.core.records import FloatArray
-from pipeline.estimators.fit import Fit
-from pipeline.estimators.lack_of_fit import outlying_points
-from pipeline.estimators.linear import fit_linear
-from pipeline.estimators.mean import coverage_factor
-from pipeline.estimators.nonlinear import fit_nonlinear
-from pipeline.estimators.power_law import fit_power_law
-from pipeline.estimators.power_law_rivals import law
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
+from deamat.estimators.least_squares.fit import Fit
+from deamat.estimators.least_squares.lack_of_fit import outlying_points
+from deamat.estimators.least_squares.linear import fit_linear
+from deamat.estimators.least_squares.nonlinear import fit_nonlinear
+from deamat.estimators.least_squares.power_law import fit_power_law
+from deamat.estimators.mean import coverage_factor
 
 _SCALES = (1e-6, 1e-3, 1.0, 1e3, 1e6)
 

@@ -8,12 +8,13 @@ import numpy as np
 
 from benchmarks.families.slope import correlated
 from benchmarks.stability.cells import Draw, Estimator, Failure, Told
-from pipeline.core.instruments import Machine
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import FloatArray, Recording, Source, Specimen
-from pipeline.core.technique import Context
-from pipeline.estimators.mean import coverage_factor
-from pipeline.techniques.compression import COMPENSATED, MODULUS, TECHNIQUE
+from deamat.core.arrays import FloatArray
+from deamat.core.instruments import Machine
+from deamat.core.quantity import Quantity
+from deamat.core.records import Recording, Source, Specimen
+from deamat.core.technique import Context
+from deamat.estimators.mean import coverage_factor
+from deamat.techniques.compression import COMPENSATED, MODULUS, TECHNIQUE
 
 Curve = tuple[FloatArray, FloatArray]
 _E = 1e6  # Pa

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.stability.cells import Draw, Estimator, Failure, Told, refused
-from pipeline.core.errors import FitRefused
-from pipeline.core.records import FloatArray
-from pipeline.estimators.weibull_goodness import goodness_of_fit, low_outlier
-from pipeline.estimators.weibull_intervals import infer
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
+from deamat.estimators.weibull.goodness import goodness_of_fit, low_outlier
+from deamat.estimators.weibull.intervals import infer
 
 Sample = tuple[FloatArray, NDArray[np.bool_] | None]
 _SCALE, _SHAPE = 97.0, 8.0

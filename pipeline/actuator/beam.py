@@ -16,10 +16,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.actuator.ranges import Reals, check, within
-from pipeline.actuator.stack import Orientation, Stack
-from pipeline.actuator.strain import InPlane, film_drive, in_plane_strain, thickness_strain
-from pipeline.core.errors import OutOfRange
+from deamat.actuator.ranges import Reals, check, within
+from deamat.actuator.stack import Orientation, Stack
+from deamat.actuator.strain import InPlane, film_drive, in_plane_strain, thickness_strain
+from deamat.core.errors import OutOfRange
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -10,10 +10,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pipeline.actuator.declared import Designs
-from pipeline.actuator.design import Bound, Request, allowed_for, choose_voltage
-from pipeline.actuator.ingredients import Ingredients, gather, strip_of
-from pipeline.actuator.strip import (
+from deamat.actuator.declared import Designs
+from deamat.actuator.design import Bound, Request, allowed_for, choose_voltage
+from deamat.actuator.ingredients import Ingredients, gather, strip_of
+from deamat.actuator.strip import (
     Allowed,
     Floats,
     Strip,
@@ -24,9 +24,9 @@ from pipeline.actuator.strip import (
     pull_in_limit,
     true_field,
 )
-from pipeline.core.errors import MissingProperty, OutOfRange, PipelineError
-from pipeline.core.units import to_si
-from pipeline.materials.card import MaterialCard
+from deamat.core.errors import MissingProperty, OutOfRange, PipelineError
+from deamat.core.units import to_si
+from deamat.materials.card import MaterialCard
 
 _RATIOS = np.geomspace(0.02, 3.0, 61)  # passive thickness over that of the film
 _PARETO_RATIOS = np.geomspace(0.1, 3.0, 16)

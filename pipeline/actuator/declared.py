@@ -10,10 +10,10 @@ from typing import Literal, TypeVar
 
 from pydantic import Field
 
-from pipeline.actuator.strain import InPlane
-from pipeline.core.config import validate
-from pipeline.core.errors import ConfigError
-from pipeline.core.instruments import Declared
+from deamat.actuator.strain import InPlane
+from deamat.core.config import validate
+from deamat.core.errors import ConfigError
+from deamat.core.instruments import Declared
 
 DESIGNS_FILE = "designs.toml"
 
@@ -32,7 +32,7 @@ class Model(Sourced):
     modulus: Literal["compressive_modulus", "tensile_modulus", "indentation_modulus"] = Field(
         description="property of the cards that is taken for Young's modulus"
     )
-    in_plane: InPlane = Field(description="rule of `pipeline.actuator.strain.in_plane_strain`")
+    in_plane: InPlane = Field(description="rule of `deamat.actuator.strain.in_plane_strain`")
 
 
 class Elastomer(Sourced):

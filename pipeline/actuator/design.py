@@ -9,11 +9,11 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from pipeline.actuator.declared import Designs, Electrode, Wanted
-from pipeline.actuator.ingredients import Ingredients, Where, gather, inputs_of, strip_of
-from pipeline.actuator.next_test import TestValue, next_tests, plan
-from pipeline.actuator.ranges import Reals, check, within
-from pipeline.actuator.strip import (
+from deamat.actuator.declared import Designs, Electrode, Wanted
+from deamat.actuator.ingredients import Ingredients, Where, gather, inputs_of, strip_of
+from deamat.actuator.next_test import TestValue, next_tests, plan
+from deamat.actuator.ranges import Reals, check, within
+from deamat.actuator.strip import (
     Allowed,
     Floats,
     Strip,
@@ -27,7 +27,7 @@ from pipeline.actuator.strip import (
     pull_in_limit,
     true_field,
 )
-from pipeline.actuator.uncertainty import (
+from deamat.actuator.uncertainty import (
     Bar,
     FirstOrder,
     Input,
@@ -38,9 +38,9 @@ from pipeline.actuator.uncertainty import (
     sample,
     tornado,
 )
-from pipeline.core.errors import MissingProperty
-from pipeline.core.units import to_si
-from pipeline.materials.card import MaterialCard
+from deamat.core.errors import MissingProperty
+from deamat.core.units import to_si
+from deamat.materials.card import MaterialCard
 
 Bound: TypeAlias = Literal["given", "breakdown", "pull-in"]
 

@@ -24,12 +24,12 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.actuator.beam import Beam, weight
-from pipeline.actuator.collocation import evaluate, grid, integral, on_grid
-from pipeline.actuator.equilibrium import Strips, rest, tips
-from pipeline.actuator.ranges import Reals, check, within
-from pipeline.actuator.stack import Orientation
-from pipeline.core.errors import FitRefused, OutOfRange
+from deamat.actuator.beam import Beam, weight
+from deamat.actuator.collocation import evaluate, grid, integral, on_grid
+from deamat.actuator.equilibrium import Strips, rest, tips
+from deamat.actuator.ranges import Reals, check, within
+from deamat.actuator.stack import Orientation
+from deamat.core.errors import FitRefused, OutOfRange
 
 MAX_LOAD = 1e4  # g: a strip 21 times its elasto-gravity length
 MAX_TURN_rad = 4.0 * np.pi  # k: two full coils, already through itself

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.actuator.collocation import Grid, grid, on_grid
+from deamat.actuator.collocation import Grid, grid, on_grid
 
 # Load at which an upright strip buckles: (9/4) j^2, j the first zero of the Bessel function J(-1/3)
 # (Greenhill 1881). Below it the energy is convex whatever the curl, so there is one shape only.

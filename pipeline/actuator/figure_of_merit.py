@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.actuator.ranges import RANGES, Reals, check, within
-from pipeline.actuator.strain import PULL_IN_STRAIN, drive, pull_in_field
-from pipeline.core.errors import OutOfRange
+from deamat.actuator.ranges import RANGES, Reals, check, within
+from deamat.actuator.strain import PULL_IN_STRAIN, drive, pull_in_field
+from deamat.core.errors import OutOfRange
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -6,15 +6,15 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
-from pipeline.actuator.declared import Designs, Electrode
-from pipeline.actuator.strip import Strip
-from pipeline.actuator.uncertainty import Input
-from pipeline.core.errors import MissingProperty, OutOfRange, PipelineError
-from pipeline.core.quantity import Contribution
-from pipeline.core.records import Condition, PropertyRecord
-from pipeline.core.units import to_si
-from pipeline.estimators.weibull_area import area_ratio
-from pipeline.materials.card import MaterialCard
+from deamat.actuator.declared import Designs, Electrode
+from deamat.actuator.strip import Strip
+from deamat.actuator.uncertainty import Input
+from deamat.core.errors import MissingProperty, OutOfRange, PipelineError
+from deamat.core.quantity import Contribution
+from deamat.core.records import Condition, PropertyRecord
+from deamat.core.units import to_si
+from deamat.estimators.weibull.area import area_ratio
+from deamat.materials.card import MaterialCard
 
 PERMITTIVITY, STRENGTH, SHAPE = "relative_permittivity", "breakdown_strength", "weibull_shape"
 

@@ -12,15 +12,15 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from pipeline.actuator.beam import Beam, actuate, deflection, displacement, weight
-from pipeline.actuator.collocation import grid
-from pipeline.actuator.elastica import deflect
-from pipeline.actuator.equilibrium import SELF_BUCKLING_LOAD, tips
-from pipeline.actuator.figure_of_merit import Unimorph, no_electrodes, single_layer
-from pipeline.actuator.ranges import check, within
-from pipeline.actuator.stack import ON_EDGE, Orientation, Stack
-from pipeline.actuator.strain import InPlane, film_drive, in_plane_strain
-from pipeline.core.errors import OutOfRange
+from deamat.actuator.beam import Beam, actuate, deflection, displacement, weight
+from deamat.actuator.collocation import grid
+from deamat.actuator.elastica import deflect
+from deamat.actuator.equilibrium import SELF_BUCKLING_LOAD, tips
+from deamat.actuator.figure_of_merit import Unimorph, no_electrodes, single_layer
+from deamat.actuator.ranges import check, within
+from deamat.actuator.stack import ON_EDGE, Orientation, Stack
+from deamat.actuator.strain import InPlane, film_drive, in_plane_strain
+from deamat.core.errors import OutOfRange
 
 Rung: TypeAlias = Literal[
     "planar", "no electrodes", "single layer", "multilayer", "thinning", "weight", "elastica"

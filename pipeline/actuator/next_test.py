@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from pipeline.actuator.ranges import within
-from pipeline.actuator.uncertainty import FirstOrder, Input, combined
+from deamat.actuator.ranges import within
+from deamat.actuator.uncertainty import FirstOrder, Input, combined
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from pipeline.actuator.figure_of_merit import Unimorph, active_part, multilayer
-from pipeline.actuator.ranges import RANGES, Reals, within
+from deamat.actuator.figure_of_merit import Unimorph, active_part, multilayer
+from deamat.actuator.ranges import RANGES, Reals, within
 
 _RATIO = (1e-9, 1e9)
 _GOLDEN = 0.6180339887498949

@@ -6,12 +6,12 @@ import math
 from collections import Counter
 from typing import Any
 
-from pipeline.actuator.compositions import Composition, Refused, Trade
-from pipeline.actuator.design import Design
-from pipeline.actuator.uncertainty import Bar
-from pipeline.core.present import SYNTHETIC_BANNER, aligned, readable, readable_conditions
-from pipeline.core.records import PropertyRecord
-from pipeline.core.units import from_si
+from deamat.actuator.compositions import Composition, Refused, Trade
+from deamat.actuator.design import Design
+from deamat.actuator.uncertainty import Bar
+from deamat.core.present import SYNTHETIC_BANNER, aligned, readable, readable_conditions
+from deamat.core.records import PropertyRecord
+from deamat.core.units import from_si
 
 Document = dict[str, Any]
 

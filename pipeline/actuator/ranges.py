@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.core.errors import OutOfRange
+from deamat.core.errors import OutOfRange
 
 # One design, or one value per design: every formula here is plain arithmetic, so that scalars run
 # at the speed of floats and arrays at the speed of numpy.

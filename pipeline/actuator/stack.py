@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Literal, TypeAlias, get_args
 
-from pipeline.actuator.ranges import Reals, check
-from pipeline.core.errors import MissingProperty, OutOfRange
+from deamat.actuator.ranges import Reals, check
+from deamat.core.errors import MissingProperty, OutOfRange
 
 Role: TypeAlias = Literal["passive", "electrode", "de", "insulation"]
 

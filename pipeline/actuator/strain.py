@@ -11,8 +11,8 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from pipeline.actuator.ranges import Reals, check, within
-from pipeline.core.errors import OutOfRange
+from deamat.actuator.ranges import Reals, check, within
+from deamat.core.errors import OutOfRange
 
 VACUUM_PERMITTIVITY_F_m = 8.8541878188e-12  # CODATA 2022
 PULL_IN_STRAIN = 1.0 / 3.0

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.actuator.figure_of_merit import Unimorph, active_part, multilayer
-from pipeline.actuator.optimum import best_passive_thickness
-from pipeline.actuator.ranges import Reals, check, within
-from pipeline.actuator.strain import (
+from deamat.actuator.figure_of_merit import Unimorph, active_part, multilayer
+from deamat.actuator.optimum import best_passive_thickness
+from deamat.actuator.ranges import Reals, check, within
+from deamat.actuator.strain import (
     PULL_IN_DRIVE,
     PULL_IN_STRAIN,
     InPlane,
@@ -26,7 +26,7 @@ from pipeline.actuator.strain import (
     pull_in_voltage,
     thickness_strain,
 )
-from pipeline.core.errors import MissingProperty
+from deamat.core.errors import MissingProperty
 
 Floats = NDArray[np.float64]
 

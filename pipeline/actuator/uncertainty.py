@@ -13,10 +13,10 @@ from typing import TypeAlias
 
 import numpy as np
 
-from pipeline.actuator.ranges import Reals, within
-from pipeline.actuator.strip import Floats
-from pipeline.core.errors import FitRefused
-from pipeline.core.quantity import Contribution
+from deamat.actuator.ranges import Reals, within
+from deamat.actuator.strip import Floats
+from deamat.core.errors import FitRefused
+from deamat.core.quantity import Contribution
 
 # From values by field of a `strip.Strip` (arrays of one shape) to the prediction, NaN where there
 # is none because the film pulls in.

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from pipeline.core.errors import ConfigError
+from deamat.core.errors import ConfigError
 
 PART_SUFFIX = ".part"  # what a killed run may leave behind; nothing reads such files
 

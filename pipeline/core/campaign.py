@@ -8,7 +8,7 @@ from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from pipeline.core.errors import RawFileError
+from deamat.core.errors import RawFileError
 
 CAMPAIGN_FILE = "campaign.toml"
 MANIFEST_FILE = "MANIFEST.sha256"

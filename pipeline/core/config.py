@@ -13,8 +13,8 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, Field, RootModel, ValidationError
 
-from pipeline.core.errors import ConfigError
-from pipeline.core.instruments import Declared, Instruments
+from deamat.core.errors import ConfigError
+from deamat.core.instruments import Declared, Instruments
 
 M = TypeVar("M", bound=BaseModel)
 

@@ -10,9 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from deamat.core.arrays import FloatArray
 
 POLYNOMIAL = "polynomial"
 EXPONENTIAL = "exponential"

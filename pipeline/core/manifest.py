@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from pipeline.core.errors import RawFileError
+from deamat.core.errors import RawFileError
 
 _LINE = re.compile(r"([0-9a-f]{64}) [ *](.+)")
 

@@ -9,9 +9,9 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import Condition, PropertyRecord
-from pipeline.core.units import from_si
+from deamat.core.quantity import Quantity
+from deamat.core.records import Condition, PropertyRecord
+from deamat.core.units import from_si
 
 SYNTHETIC_BANNER = "SYNTHETIC: simulated data, not measurements"
 

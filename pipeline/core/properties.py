@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from pipeline.core.errors import MissingProperty
+from deamat.core.errors import MissingProperty
 
 
 @dataclass(frozen=True, slots=True)

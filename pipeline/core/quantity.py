@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from pipeline.core.errors import OutOfRange
+from deamat.core.errors import OutOfRange
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,13 +8,12 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pipeline.core.errors import OutOfRange
-from pipeline.core.laws import evaluate
-from pipeline.core.quantity import Contribution, Quantity
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import OutOfRange
+from deamat.core.laws import evaluate
+from deamat.core.quantity import Contribution, Quantity
 
-FloatArray = NDArray[np.float64]
 Condition = str | float | tuple[float, float]
 Detail = float | int | str
 

@@ -17,11 +17,11 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from pipeline.core.errors import RawFileError
-from pipeline.core.instruments import Gauge
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import Condition, Specimen
-from pipeline.core.units import UNITS, known, si_factor
+from deamat.core.errors import RawFileError
+from deamat.core.instruments import Gauge
+from deamat.core.quantity import Quantity
+from deamat.core.records import Condition, Specimen
+from deamat.core.units import UNITS, known, si_factor
 
 REGISTER_FILE = "specimens.csv"
 REGISTER_FILES = (REGISTER_FILE, "observations.csv")

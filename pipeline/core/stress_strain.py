@@ -9,10 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.core.errors import FitRefused
-from pipeline.core.instruments import Machine
-from pipeline.core.quantity import Contribution, Quantity
-from pipeline.core.records import Flag, FloatArray, Recording
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
+from deamat.core.instruments import Machine
+from deamat.core.quantity import Contribution, Quantity
+from deamat.core.records import Flag, Recording
 
 IndexArray = NDArray[np.intp]
 

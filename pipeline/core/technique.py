@@ -8,10 +8,10 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from pipeline.core.instruments import Machine
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import Law, Measurement, Recording, Specimen, Summary
-from pipeline.core.register import SPECIMENS, RegisterForm
+from deamat.core.instruments import Machine
+from deamat.core.quantity import Quantity
+from deamat.core.records import Law, Measurement, Recording, Specimen, Summary
+from deamat.core.register import SPECIMENS, RegisterForm
 
 
 @dataclass(frozen=True, slots=True)

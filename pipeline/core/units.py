@@ -10,7 +10,7 @@ import difflib
 import math
 import re
 
-from pipeline.core.errors import ConfigError, PipelineError
+from deamat.core.errors import ConfigError, PipelineError
 
 _KELVIN_AT_0_C = 273.15
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pipeline.core.errors import OutOfRange
+from deamat.core.errors import OutOfRange
 
 SPEEDS_RPM = (0.3, 0.6, 1.5, 3.0, 6.0, 12.0, 30.0, 60.0)
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import stdtrit
 
-from pipeline.core.errors import FitRefused
+from deamat.core.errors import FitRefused
 
 
 @dataclass(frozen=True, slots=True)

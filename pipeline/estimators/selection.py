@@ -14,8 +14,8 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
-from pipeline.core.errors import FitRefused, OutOfRange
-from pipeline.estimators.fit import Fit
+from deamat.core.errors import FitRefused, OutOfRange
+from deamat.estimators.least_squares.fit import Fit
 
 # A costlier law must lower AICc by more than this against a cheaper one: the data must support it
 # exp(6 / 2) = 20 times better. Of straight lines of 8 to 720 points, with orders up to 5 on offer,

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from importlib import import_module
 
-from pipeline.formats.format import Format
+from deamat.formats.format import Format
 
 FORMATS: tuple[Format, ...] = tuple(
     import_module(f"{__name__}.{module}").FORMAT

@@ -21,13 +21,13 @@ None.
 
 from __future__ import annotations
 
-from pipeline.core.records import Recording
-from pipeline.formats.cells import Dialect
-from pipeline.formats.columns import Reader
-from pipeline.formats.format import Format
-from pipeline.formats.header import Layout, two_row_layout, units_row
-from pipeline.formats.rawfile import Head, RawFile
-from pipeline.formats.table import read_table, required
+from deamat.core.records import Recording
+from deamat.formats.cells import Dialect
+from deamat.formats.columns import Reader
+from deamat.formats.format import Format
+from deamat.formats.header import Layout, two_row_layout, units_row
+from deamat.formats.rawfile import Head, RawFile
+from deamat.formats.table import read_table, required
 
 _READER = Reader("antonpaar", 1, Dialect(";", ","))
 

@@ -24,13 +24,13 @@ Every header line under its key, value and unit joined by a space.
 
 from __future__ import annotations
 
-from pipeline.core.records import Recording
-from pipeline.formats.cells import Dialect
-from pipeline.formats.columns import Reader
-from pipeline.formats.format import Format
-from pipeline.formats.header import Layout, two_row_layout, units_row
-from pipeline.formats.rawfile import Head, RawFile
-from pipeline.formats.table import read_plain
+from deamat.core.records import Recording
+from deamat.formats.cells import Dialect
+from deamat.formats.columns import Reader
+from deamat.formats.format import Format
+from deamat.formats.header import Layout, two_row_layout, units_row
+from deamat.formats.rawfile import Head, RawFile
+from deamat.formats.table import read_plain
 
 _READER = Reader("bluehill", 1, Dialect(",", quoted=True))
 

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.core.errors import RawFileError
-from pipeline.core.records import FloatArray
-from pipeline.formats.rawfile import RawFile
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import RawFileError
+from deamat.formats.rawfile import RawFile
 
 # From here on a reading means "over range": SCPI instruments send 9.9E37 (9.91E37 for "no number").
 OVER_RANGE = 9.9e37

@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 
-from pipeline.core.errors import RawFileError
-from pipeline.core.records import Flag
-from pipeline.core.units import UnknownUnit, si_factor
-from pipeline.formats.cells import Dialect
-from pipeline.formats.documentation import contradictions
-from pipeline.formats.header import Layout
-from pipeline.formats.quantities import STANDARD, assign, meaning
+from deamat.core.errors import RawFileError
+from deamat.core.records import Flag
+from deamat.core.units import UnknownUnit, si_factor
+from deamat.formats.cells import Dialect
+from deamat.formats.documentation import contradictions
+from deamat.formats.header import Layout
+from deamat.formats.quantities import STANDARD, assign, meaning
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,6 +1,6 @@
 """Which format a file has: exactly one must recognise it.
 
-To add a format, see `pipeline.formats`: one file, one line.
+To add a format, see `deamat.formats`: one file, one line.
 """
 
 from __future__ import annotations
@@ -8,10 +8,10 @@ from __future__ import annotations
 import difflib
 from collections import Counter
 
-from pipeline.core.errors import ConfigError, RawFileError
-from pipeline.formats import FORMATS
-from pipeline.formats.format import Format
-from pipeline.formats.rawfile import Head, RawFile
+from deamat.core.errors import ConfigError, RawFileError
+from deamat.formats import FORMATS
+from deamat.formats.format import Format
+from deamat.formats.rawfile import Head, RawFile
 
 _DELIMITERS = {"tab": "\t", "semicolon": ";", "comma": ","}
 

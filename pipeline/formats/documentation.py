@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
-from pipeline.core.records import Flag
-from pipeline.core.units import UnknownUnit, known, si_factor
+from deamat.core.records import Flag
+from deamat.core.units import UnknownUnit, known, si_factor
 
 _STATEMENT = re.compile(
     r"\s*(?:[-*+•]\s+)?"  # a bullet

@@ -30,11 +30,11 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from pipeline.core.errors import RawFileError
-from pipeline.core.records import Recording
-from pipeline.formats.cells import Dialect
-from pipeline.formats.format import Format
-from pipeline.formats.lcr_sweep import (
+from deamat.core.errors import RawFileError
+from deamat.core.records import Recording
+from deamat.formats.cells import Dialect
+from deamat.formats.format import Format
+from deamat.formats.lcr_sweep import (
     PAIRS,
     Sweep,
     function_columns,
@@ -42,7 +42,7 @@ from pipeline.formats.lcr_sweep import (
     mode_of,
     read_sweep,
 )
-from pipeline.formats.rawfile import Head, RawFile
+from deamat.formats.rawfile import Head, RawFile
 
 _NAME, _VERSION = "e4980a", 1
 _FREQUENCY = re.compile(r"freq(?:uency)?\s*(?:[(\[_ ]\s*hz\s*[)\]]?)?", re.IGNORECASE)

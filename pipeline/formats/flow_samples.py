@@ -6,8 +6,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from pipeline.core.records import FloatArray, Recording, Source
-from pipeline.formats.rawfile import RawFile
+from deamat.core.arrays import FloatArray
+from deamat.core.records import Recording, Source
+from deamat.formats.rawfile import RawFile
 
 SEPARATOR = "; "
 

@@ -23,14 +23,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from pipeline.core.records import Flag, Recording
-from pipeline.formats.cells import Dialect, looks_numeric
-from pipeline.formats.columns import Reader
-from pipeline.formats.format import Format
-from pipeline.formats.header import Layout, split, split_label
-from pipeline.formats.quantities import meaning
-from pipeline.formats.rawfile import RawFile
-from pipeline.formats.table import read_table, required
+from deamat.core.records import Flag, Recording
+from deamat.formats.cells import Dialect, looks_numeric
+from deamat.formats.columns import Reader
+from deamat.formats.format import Format
+from deamat.formats.header import Layout, split, split_label
+from deamat.formats.quantities import meaning
+from deamat.formats.rawfile import RawFile
+from deamat.formats.table import read_table, required
 
 _READER = Reader(
     "flow_tab",

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from pipeline.core.records import Recording
-from pipeline.formats.rawfile import Head, RawFile
+from deamat.core.records import Recording
+from deamat.formats.rawfile import Head, RawFile
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,10 +9,10 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from pipeline.core.units import known
-from pipeline.formats.cells import looks_numeric
-from pipeline.formats.quantities import meaning
-from pipeline.formats.rawfile import ROW_STARTS, Head
+from deamat.core.units import known
+from deamat.formats.cells import looks_numeric
+from deamat.formats.quantities import meaning
+from deamat.formats.rawfile import ROW_STARTS, Head
 
 _LABEL_WITH_UNIT = re.compile(r"(.*\S)\s*(?:\(([^()]*)\)|\[([^\[\]]*)\])")
 _CELL = {mark: re.compile(rf'(?:^|{mark}) *("[^"]*"|[^{mark}]*)') for mark in ",;\t"}

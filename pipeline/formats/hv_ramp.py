@@ -29,16 +29,17 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from pipeline.core.errors import RawFileError
-from pipeline.core.records import FloatArray, Recording
-from pipeline.core.register import split_unit
-from pipeline.core.units import known, si_factor
-from pipeline.formats.cells import Dialect, looks_numeric
-from pipeline.formats.columns import Reader
-from pipeline.formats.format import Format
-from pipeline.formats.header import Layout, notes, split
-from pipeline.formats.rawfile import RawFile
-from pipeline.formats.table import read_table, required
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import RawFileError
+from deamat.core.records import Recording
+from deamat.core.register import split_unit
+from deamat.core.units import known, si_factor
+from deamat.formats.cells import Dialect, looks_numeric
+from deamat.formats.columns import Reader
+from deamat.formats.format import Format
+from deamat.formats.header import Layout, notes, split
+from deamat.formats.rawfile import RawFile
+from deamat.formats.table import read_table, required
 
 _NAME, _VERSION = "hv_ramp", 1
 _CHANNEL_LABEL = re.compile(r"ch(\d+)")

@@ -26,14 +26,14 @@ Metadata
 
 from __future__ import annotations
 
-from pipeline.core.errors import RawFileError
-from pipeline.core.records import Recording
-from pipeline.formats.cells import Dialect
-from pipeline.formats.columns import Reader
-from pipeline.formats.format import Format
-from pipeline.formats.header import Layout, split, split_label
-from pipeline.formats.rawfile import RawFile
-from pipeline.formats.table import read_table, required
+from deamat.core.errors import RawFileError
+from deamat.core.records import Recording
+from deamat.formats.cells import Dialect
+from deamat.formats.columns import Reader
+from deamat.formats.format import Format
+from deamat.formats.header import Layout, split, split_label
+from deamat.formats.rawfile import RawFile
+from deamat.formats.table import read_table, required
 
 _READER = Reader("hysitron", 1, Dialect("\t", segmented=True))
 _POINTS = "Number of Points"

@@ -29,10 +29,10 @@ from __future__ import annotations
 
 import re
 
-from pipeline.core.records import Recording
-from pipeline.formats.cells import Dialect
-from pipeline.formats.format import Format
-from pipeline.formats.lcr_sweep import (
+from deamat.core.records import Recording
+from deamat.formats.cells import Dialect
+from deamat.formats.format import Format
+from deamat.formats.lcr_sweep import (
     PAIRS,
     Sweep,
     function_columns,
@@ -40,7 +40,7 @@ from pipeline.formats.lcr_sweep import (
     mode_of,
     read_sweep,
 )
-from pipeline.formats.rawfile import Head, RawFile
+from deamat.formats.rawfile import Head, RawFile
 
 _NAME, _VERSION = "lcr6000", 1
 _REPLY = re.compile(r"#?\s*(\S.*?)\s*=>\s*(.*?)\s*")

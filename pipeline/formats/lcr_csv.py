@@ -29,15 +29,15 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from pipeline.core.errors import RawFileError
-from pipeline.core.records import Recording
-from pipeline.core.register import split_unit
-from pipeline.core.units import known, si_factor
-from pipeline.formats.cells import Dialect
-from pipeline.formats.format import Format
-from pipeline.formats.header import bare_unit, split
-from pipeline.formats.lcr_sweep import PAIRS, Column, Sweep, read_sweep
-from pipeline.formats.rawfile import RawFile
+from deamat.core.errors import RawFileError
+from deamat.core.records import Recording
+from deamat.core.register import split_unit
+from deamat.core.units import known, si_factor
+from deamat.formats.cells import Dialect
+from deamat.formats.format import Format
+from deamat.formats.header import bare_unit, split
+from deamat.formats.lcr_sweep import PAIRS, Column, Sweep, read_sweep
+from deamat.formats.rawfile import RawFile
 
 _NAME, _VERSION = "lcr_csv", 1
 _STATUSES = {"ok": True, "out": False, "over": False}

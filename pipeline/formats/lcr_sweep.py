@@ -12,12 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.core.errors import RawFileError
-from pipeline.core.records import Flag, FloatArray, Recording, Source
-from pipeline.core.units import UnknownUnit, si_factor
-from pipeline.formats.cells import OVER_RANGE, Dialect, looks_numeric, read_cells
-from pipeline.formats.rawfile import RawFile
-from pipeline.formats.table import row_flags
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import RawFileError
+from deamat.core.records import Flag, Recording, Source
+from deamat.core.units import UnknownUnit, si_factor
+from deamat.formats.cells import OVER_RANGE, Dialect, looks_numeric, read_cells
+from deamat.formats.rawfile import RawFile
+from deamat.formats.table import row_flags
 
 # what a meter calls its setting -> the two columns that it then writes, each with its unit
 PAIRS: dict[str, tuple[tuple[str, str], tuple[str, str]]] = {

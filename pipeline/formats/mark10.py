@@ -22,13 +22,13 @@ Metadata
 
 from __future__ import annotations
 
-from pipeline.core.records import Recording
-from pipeline.formats.cells import Dialect
-from pipeline.formats.columns import Reader
-from pipeline.formats.format import Format
-from pipeline.formats.header import Layout, notes, split, split_label
-from pipeline.formats.rawfile import Head, RawFile
-from pipeline.formats.table import read_table, required
+from deamat.core.records import Recording
+from deamat.formats.cells import Dialect
+from deamat.formats.columns import Reader
+from deamat.formats.format import Format
+from deamat.formats.header import Layout, notes, split, split_label
+from deamat.formats.rawfile import Head, RawFile
+from deamat.formats.table import read_table, required
 
 _READER = Reader("mark10", 1, Dialect("\t"), {"reading": "1", "time": "s"})
 _HEADER_UNITS = {"Load": "Units", "Travel": "Travel Unit"}

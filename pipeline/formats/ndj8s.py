@@ -25,12 +25,12 @@ from __future__ import annotations
 
 import re
 
-from pipeline.core.errors import RawFileError
-from pipeline.core.records import Recording
-from pipeline.core.units import to_si
-from pipeline.formats.format import Format
-from pipeline.formats.rawfile import RawFile
-from pipeline.formats.viscometer import (
+from deamat.core.errors import RawFileError
+from deamat.core.records import Recording
+from deamat.core.units import to_si
+from deamat.formats.format import Format
+from deamat.formats.rawfile import RawFile
+from deamat.formats.viscometer import (
     BELOW_ZERO,
     OVER_RANGE,
     Reading,

@@ -14,11 +14,11 @@ from collections.abc import Sequence
 import numpy as np
 import simdjson
 
-from pipeline.core.errors import RawFileError
-from pipeline.core.records import FloatArray
-from pipeline.formats.cells import OVER_RANGE, Dialect, read_cells
-from pipeline.formats.quoted import unquote
-from pipeline.formats.rawfile import RawFile
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import RawFileError
+from deamat.formats.cells import OVER_RANGE, Dialect, read_cells
+from deamat.formats.quoted import unquote
+from deamat.formats.rawfile import RawFile
 
 _DIGITS = b"0123456789+-eE "
 _BLANK_LINES = re.compile(rb"\n(?:[ \t]*\r?\n)+")

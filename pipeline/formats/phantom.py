@@ -25,14 +25,14 @@ Every note as text: `key: value` under its key, a line without a value under its
 
 from __future__ import annotations
 
-from pipeline.core.records import Recording
-from pipeline.formats.cells import Dialect
-from pipeline.formats.columns import Reader
-from pipeline.formats.documentation import stated_units
-from pipeline.formats.format import Format
-from pipeline.formats.header import Layout, inline_layout, notes
-from pipeline.formats.rawfile import Head, RawFile
-from pipeline.formats.table import read_table, required
+from deamat.core.records import Recording
+from deamat.formats.cells import Dialect
+from deamat.formats.columns import Reader
+from deamat.formats.documentation import stated_units
+from deamat.formats.format import Format
+from deamat.formats.header import Layout, inline_layout, notes
+from deamat.formats.rawfile import Head, RawFile
+from deamat.formats.table import read_table, required
 
 _READER = Reader("phantom", 1, Dialect(","))
 

@@ -11,7 +11,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Concatenate, ParamSpec, TypeVar, cast
 
-from pipeline.core.errors import RawFileError
+from deamat.core.errors import RawFileError
 
 _MANY_LINES, _FEW_LINES = 64, 16  # enough for any header, and for nearly every one
 _ROWS_BELOW = 8  # rows of plain numbers that end a header

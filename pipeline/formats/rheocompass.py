@@ -25,14 +25,14 @@ from __future__ import annotations
 
 import re
 
-from pipeline.core.errors import RawFileError
-from pipeline.core.records import Recording, Source
-from pipeline.core.units import UnknownUnit, si_factor
-from pipeline.formats.cells import Dialect, looks_numeric, read_cells
-from pipeline.formats.format import Format
-from pipeline.formats.header import Layout, bare_unit
-from pipeline.formats.quantities import assign, meaning
-from pipeline.formats.rawfile import RawFile
+from deamat.core.errors import RawFileError
+from deamat.core.records import Recording, Source
+from deamat.core.units import UnknownUnit, si_factor
+from deamat.formats.cells import Dialect, looks_numeric, read_cells
+from deamat.formats.format import Format
+from deamat.formats.header import Layout, bare_unit
+from deamat.formats.quantities import assign, meaning
+from deamat.formats.rawfile import RawFile
 
 _NAME, _VERSION = "rheocompass", 1
 _LABELS = re.compile(r"(?:Abschnittsdaten|Interval data):\t")

@@ -23,12 +23,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from pipeline.core.errors import RawFileError
-from pipeline.core.records import Recording
-from pipeline.formats.cells import Dialect, read_cells
-from pipeline.formats.flow_samples import long_recording
-from pipeline.formats.format import Format
-from pipeline.formats.rawfile import RawFile
+from deamat.core.errors import RawFileError
+from deamat.core.records import Recording
+from deamat.formats.cells import Dialect, read_cells
+from deamat.formats.flow_samples import long_recording
+from deamat.formats.format import Format
+from deamat.formats.rawfile import RawFile
 
 _NAME, _VERSION = "rheodata", 1
 _LABELS = "sample_id,shear_rate_1/s,stress_Pa"

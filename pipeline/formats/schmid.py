@@ -24,14 +24,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from pipeline.core.errors import RawFileError
-from pipeline.core.records import Recording
-from pipeline.core.units import UnknownUnit, si_factor
-from pipeline.formats.cells import Dialect
-from pipeline.formats.flow_samples import SEPARATOR, long_recording
-from pipeline.formats.format import Format
-from pipeline.formats.numbers import read_block
-from pipeline.formats.rawfile import RawFile
+from deamat.core.errors import RawFileError
+from deamat.core.records import Recording
+from deamat.core.units import UnknownUnit, si_factor
+from deamat.formats.cells import Dialect
+from deamat.formats.flow_samples import SEPARATOR, long_recording
+from deamat.formats.format import Format
+from deamat.formats.numbers import read_block
+from deamat.formats.rawfile import RawFile
 
 _NAME, _VERSION = "schmid", 1
 _SI = ("1/s", "Pa", "Pa.s")

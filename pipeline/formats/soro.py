@@ -24,13 +24,13 @@ Every header line under its label, value and further cells joined by a space.
 
 from __future__ import annotations
 
-from pipeline.core.records import Recording
-from pipeline.formats.cells import Dialect
-from pipeline.formats.columns import Reader
-from pipeline.formats.format import Format
-from pipeline.formats.header import Layout, inline_layout
-from pipeline.formats.rawfile import Head, RawFile
-from pipeline.formats.table import read_plain
+from deamat.core.records import Recording
+from deamat.formats.cells import Dialect
+from deamat.formats.columns import Reader
+from deamat.formats.format import Format
+from deamat.formats.header import Layout, inline_layout
+from deamat.formats.rawfile import Head, RawFile
+from deamat.formats.table import read_plain
 
 _READER = Reader("soro", 1, Dialect(";"), {"true strain": "1", "engineering strain": "1"})
 

@@ -7,13 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.core.errors import RawFileError
-from pipeline.core.records import Flag, FloatArray, Recording, Source
-from pipeline.formats.cells import looks_numeric
-from pipeline.formats.columns import Columns, Reader, columns_of
-from pipeline.formats.header import Layout, notes
-from pipeline.formats.numbers import read_block, row_lines
-from pipeline.formats.rawfile import Head, RawFile
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import RawFileError
+from deamat.core.records import Flag, Recording, Source
+from deamat.formats.cells import looks_numeric
+from deamat.formats.columns import Columns, Reader, columns_of
+from deamat.formats.header import Layout, notes
+from deamat.formats.numbers import read_block, row_lines
+from deamat.formats.rawfile import Head, RawFile
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,10 +10,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from pipeline.core.errors import RawFileError
-from pipeline.core.records import Flag, FloatArray, Recording, Source
-from pipeline.core.units import to_si
-from pipeline.formats.rawfile import RawFile
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import RawFileError
+from deamat.core.records import Flag, Recording, Source
+from deamat.core.units import to_si
+from deamat.formats.rawfile import RawFile
 
 DAY_S = 86400.0
 # A clock that shows less than before has gone past midnight if it fell by more than half a day, and

@@ -30,12 +30,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pipeline.core.errors import RawFileError
-from pipeline.core.records import FloatArray, Recording
-from pipeline.core.units import to_si
-from pipeline.formats.format import Format
-from pipeline.formats.rawfile import RawFile
-from pipeline.formats.viscometer import (
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import RawFileError
+from deamat.core.records import Recording
+from deamat.core.units import to_si
+from deamat.formats.format import Format
+from deamat.formats.rawfile import RawFile
+from deamat.formats.viscometer import (
     BELOW_ZERO,
     NO_PROBE,
     OVER_RANGE,

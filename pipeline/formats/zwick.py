@@ -29,13 +29,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from pipeline.core.records import Flag, Recording
-from pipeline.formats.cells import Dialect
-from pipeline.formats.columns import Reader
-from pipeline.formats.format import Format
-from pipeline.formats.header import Layout, two_row_layout
-from pipeline.formats.rawfile import Head, RawFile
-from pipeline.formats.table import read_plain
+from deamat.core.records import Flag, Recording
+from deamat.formats.cells import Dialect
+from deamat.formats.columns import Reader
+from deamat.formats.format import Format
+from deamat.formats.header import Layout, two_row_layout
+from deamat.formats.rawfile import Head, RawFile
+from deamat.formats.table import read_plain
 
 _READER = Reader("zwick", 1, Dialect(","))
 

@@ -12,13 +12,13 @@ from operator import itemgetter
 from pathlib import Path
 from typing import Any, TypeVar
 
-from pipeline.core.errors import MissingProperty
-from pipeline.core.present import readable_record
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import Condition, Law, PropertyRecord, Refusal
-from pipeline.materials import document as doc
-from pipeline.materials.document import CardError, Document
-from pipeline.materials.select import choose, refusal_reasons
+from deamat.core.errors import MissingProperty
+from deamat.core.present import readable_record
+from deamat.core.quantity import Quantity
+from deamat.core.records import Condition, Law, PropertyRecord, Refusal
+from deamat.materials import document as doc
+from deamat.materials.document import CardError, Document
+from deamat.materials.select import choose, refusal_reasons
 
 E = TypeVar("E", PropertyRecord, Law)
 

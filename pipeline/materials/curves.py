@@ -18,9 +18,10 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.core.errors import PipelineError
-from pipeline.core.records import FloatArray, Measurement
-from pipeline.core.units import known, si_factor
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import PipelineError
+from deamat.core.records import Measurement
+from deamat.core.units import known, si_factor
 
 if TYPE_CHECKING:
     import xarray

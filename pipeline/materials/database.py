@@ -16,12 +16,12 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
-from pipeline.core.errors import PipelineError
-from pipeline.core.ledger import FileEntry, Provenance
-from pipeline.materials.card import Credit, MaterialCard
-from pipeline.materials.document import CardError
-from pipeline.materials.rows import laws_of, owned_of, records_of, refusals_of
-from pipeline.materials.tables import (
+from deamat.core.errors import PipelineError
+from deamat.core.ledger import FileEntry, Provenance
+from deamat.materials.card import Credit, MaterialCard
+from deamat.materials.document import CardError
+from deamat.materials.rows import laws_of, owned_of, records_of, refusals_of
+from deamat.materials.tables import (
     APPLICATION_ID,
     TABLES,
     VERSION,
@@ -220,7 +220,7 @@ class Database(Mapping[str, MaterialCard]):
         MissingMaterial : the database does not hold it
         CurvesError : no such file, or not one of curves
         """
-        from pipeline.materials.curves import read_curves  # h5py: only whoever wants curves pays
+        from deamat.materials.curves import read_curves  # h5py: only whoever wants curves pays
 
         query = "SELECT synthetic FROM materials WHERE material = ?"
         found = self._rows(query, material)

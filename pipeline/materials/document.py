@@ -12,10 +12,10 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields, replace
 from typing import Any, TypeVar
 
-from pipeline.core.errors import PipelineError
-from pipeline.core.properties import CONDITIONS, property_key
-from pipeline.core.quantity import Contribution, Quantity
-from pipeline.core.records import (
+from deamat.core.errors import PipelineError
+from deamat.core.properties import CONDITIONS, property_key
+from deamat.core.quantity import Contribution, Quantity
+from deamat.core.records import (
     Condition,
     Detail,
     Flag,

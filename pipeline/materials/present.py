@@ -5,8 +5,8 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Mapping, Sequence
 
-from pipeline.core.laws import EXPONENTIAL, POWER_LAW_FLUID, POWER_LAW_TO_GEL
-from pipeline.core.present import (
+from deamat.core.laws import EXPONENTIAL, POWER_LAW_FLUID, POWER_LAW_TO_GEL
+from deamat.core.present import (
     SYNTHETIC_BANNER,
     aligned,
     readable_conditions,
@@ -15,11 +15,11 @@ from pipeline.core.present import (
     readable_unit,
     scale_of,
 )
-from pipeline.core.properties import PROPERTIES, REFERENCE_AGE, property_key
-from pipeline.core.records import Condition, Law, PropertyRecord
-from pipeline.core.units import from_si
-from pipeline.materials.card import Credit, MaterialCard
-from pipeline.materials.select import refusal_reasons
+from deamat.core.properties import PROPERTIES, REFERENCE_AGE, property_key
+from deamat.core.records import Condition, Law, PropertyRecord
+from deamat.core.units import from_si
+from deamat.materials.card import Credit, MaterialCard
+from deamat.materials.select import refusal_reasons
 
 _WIDTH = 110
 _HEADINGS = ("property", "symbol", "value", "95 % interval", "n", "conditions", "flags")

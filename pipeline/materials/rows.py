@@ -12,9 +12,9 @@ from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple, TypeVar
 
-from pipeline.core.quantity import Contribution, Quantity
-from pipeline.core.records import Condition, Detail, Flag, Law, Origin, PropertyRecord, Refusal
-from pipeline.materials.document import NOT_FINITE, conditions_from, details_from
+from deamat.core.quantity import Contribution, Quantity
+from deamat.core.records import Condition, Detail, Flag, Law, Origin, PropertyRecord, Refusal
+from deamat.materials.document import NOT_FINITE, conditions_from, details_from
 
 Rows = Sequence[tuple[Any, ...]]
 T = TypeVar("T")

@@ -6,9 +6,9 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TypeVar
 
-from pipeline.core.errors import MissingProperty
-from pipeline.core.properties import CONDITIONS, REFERENCE_AGE
-from pipeline.core.records import Condition, Law, PropertyRecord, Refusal
+from deamat.core.errors import MissingProperty
+from deamat.core.properties import CONDITIONS, REFERENCE_AGE
+from deamat.core.records import Condition, Law, PropertyRecord, Refusal
 
 E = TypeVar("E", PropertyRecord, Law)
 Asked = Mapping[str, Condition | None]

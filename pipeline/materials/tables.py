@@ -12,8 +12,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import astuple
 from typing import Any
 
-from pipeline.core.ledger import FileEntry, Provenance
-from pipeline.materials.document import Document, canonical_json
+from deamat.core.ledger import FileEntry, Provenance
+from deamat.materials.document import Document, canonical_json
 
 VERSION = 1  # raise it with every change of the tables; kept as PRAGMA user_version
 APPLICATION_ID = 0x6465614D  # "deaM": tells our files from other SQLite databases

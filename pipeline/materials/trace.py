@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from pipeline.core.ledger import Provenance
-from pipeline.core.present import (
+from deamat.core.ledger import Provenance
+from deamat.core.present import (
     Scale,
     aligned,
     readable,
@@ -18,13 +18,13 @@ from pipeline.core.present import (
     scale_of,
     si_text,
 )
-from pipeline.core.properties import property_key
-from pipeline.core.quantity import Contribution, Quantity
-from pipeline.core.records import Condition, Detail, Law, Origin, PropertyRecord, Refusal
-from pipeline.materials.card import MaterialCard
-from pipeline.materials.database import Database
-from pipeline.materials.document import Document, law_document, record_document, refusal_document
-from pipeline.materials.present import credit_text, law_text, synthetic_lines, title
+from deamat.core.properties import property_key
+from deamat.core.quantity import Contribution, Quantity
+from deamat.core.records import Condition, Detail, Law, Origin, PropertyRecord, Refusal
+from deamat.materials.card import MaterialCard
+from deamat.materials.database import Database
+from deamat.materials.document import Document, law_document, record_document, refusal_document
+from deamat.materials.present import credit_text, law_text, synthetic_lines, title
 
 Entry = PropertyRecord | Law
 
@@ -94,7 +94,7 @@ def percent_of_variance(budget: Sequence[Contribution]) -> list[float]:
 
 def _refusal_places(refusal: Refusal, card: MaterialCard) -> list[str]:
     """Say where the refused specimen's data stand, as far as another value of its test tells."""
-    from pipeline.techniques import TECHNIQUES  # imports every room: only a refusal needs them
+    from deamat.techniques import TECHNIQUES  # imports every room: only a refusal needs them
 
     tests = {t.key for t in TECHNIQUES.values() if refusal.key in t.yields}
     entries: list[Entry] = [*card.records, *card.laws]

@@ -9,9 +9,9 @@ from collections.abc import Sequence
 from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from pipeline.core.units import from_si
-from pipeline.report.moduli import ModulusBar
-from pipeline.report.style import COLOURS, plain
+from deamat.core.units import from_si
+from deamat.report.moduli import ModulusBar
+from deamat.report.style import COLOURS, plain
 
 _LOGARITHMIC_FROM = 20.0  # largest over smallest modulus
 _ROOM_FOR_VALUES = 0.2  # part of the axis to the right of the longest interval

@@ -12,12 +12,12 @@ from matplotlib.colors import Normalize
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter
 
-from pipeline.actuator.compositions import Composition, Trade
-from pipeline.actuator.design import Design
-from pipeline.actuator.uncertainty import Bar
-from pipeline.core.errors import MissingProperty
-from pipeline.core.units import from_si
-from pipeline.report.style import (
+from deamat.actuator.compositions import Composition, Trade
+from deamat.actuator.design import Design
+from deamat.actuator.uncertainty import Bar
+from deamat.core.errors import MissingProperty
+from deamat.core.units import from_si
+from deamat.report.style import (
     COLOURS,
     AXES_HEIGHT_in,
     figure_style,

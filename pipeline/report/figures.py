@@ -7,9 +7,9 @@ from pathlib import Path
 
 from matplotlib.axes import Axes
 
-from pipeline.report.bars import draw_moduli, height_for
-from pipeline.report.moduli import ModulusBar
-from pipeline.report.style import figure_style, new_figure, place_legend, save_figure, set_title
+from deamat.report.bars import draw_moduli, height_for
+from deamat.report.moduli import ModulusBar
+from deamat.report.style import figure_style, new_figure, place_legend, save_figure, set_title
 
 
 def technique_title(material: str, technique: str, n: int) -> str:
@@ -64,7 +64,7 @@ def moduli_figure(
 
     Parameters
     ----------
-    bars : see `pipeline.report.moduli.modulus_bars`
+    bars : see `deamat.report.moduli.modulus_bars`
     synthetic : the data are simulated
 
     Returns

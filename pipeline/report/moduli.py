@@ -6,8 +6,8 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from pipeline.core.properties import PROPERTIES, REFERENCE_AGE
-from pipeline.core.records import Condition, PropertyRecord, Refusal
+from deamat.core.properties import PROPERTIES, REFERENCE_AGE
+from deamat.core.records import Condition, PropertyRecord, Refusal
 
 _MODULI = tuple(p.key for p in PROPERTIES.values() if p.unit == "Pa" and "modulus" in p.key)
 

@@ -23,8 +23,8 @@ from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.text import Text
 
-from pipeline.core.atomic import write_atomically
-from pipeline.core.errors import ConfigError
+from deamat.core.atomic import write_atomically
+from deamat.core.errors import ConfigError
 
 MARK = "SYNTHETIC DATA"
 MARK_MEANING = f"{MARK}: simulated, not measured"

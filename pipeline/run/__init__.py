@@ -10,10 +10,10 @@ import os
 from collections.abc import Callable
 from typing import Any
 
-from pipeline.core.errors import ConfigError
-from pipeline.run.folders import Folders, look
-from pipeline.run.published import intact
-from pipeline.run.state import State
+from deamat.core.errors import ConfigError
+from deamat.run.folders import Folders, look
+from deamat.run.published import intact
+from deamat.run.state import State
 
 
 def run_all(
@@ -48,7 +48,7 @@ def run_all(
         ):
             document: dict[str, Any] = json.loads(state.read_note("document") or "{}")
             return {**document, "nothing_to_do": True}
-        from pipeline.run.process import process  # numpy, pydantic: only when there is work
+        from deamat.run.process import process  # numpy, pydantic: only when there is work
 
         cores = len(os.sched_getaffinity(0))
         document = process(
@@ -62,7 +62,7 @@ def run_all(
 def explain(folders: Folders) -> dict[str, Any]:
     """Say what a run would redo now and why, and what the last one redid."""
     with State(folders.processed) as state:
-        from pipeline.run.process import process
+        from deamat.run.process import process
 
         now = process(folders, state, look(folders), workers=1, progress=_silent, dry=True)
         last = json.loads(state.read_note("document") or '{"redone": []}')

@@ -6,9 +6,9 @@ from collections import Counter
 from dataclasses import asdict
 from typing import Any
 
-from pipeline.core.ledger import FileEntry
-from pipeline.run import run_all
-from pipeline.run.folders import Folders, look
+from deamat.core.ledger import FileEntry
+from deamat.run import run_all
+from deamat.run.folders import Folders, look
 
 
 def audit(folders: Folders) -> dict[str, Any]:
@@ -16,7 +16,7 @@ def audit(folders: Folders) -> dict[str, Any]:
 
     The document holds `exit_code`, `files` (one entry each) and `unaccounted`, which must be empty.
     """
-    from pipeline.materials.database import open_database
+    from deamat.materials.database import open_database
 
     document = run_all(folders, 1, lambda *_: None, verify=True)
     with open_database(folders.processed) as database:

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from pipeline.run.state import State
+from deamat.run.state import State
 
 STALE = "to be redone"
 

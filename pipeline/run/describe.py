@@ -6,12 +6,12 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import Any, get_args
 
-from pipeline.core.config import Config
-from pipeline.core.ledger import FileEntry, Status
-from pipeline.run.book import Book
-from pipeline.run.folders import Folders
-from pipeline.run.measure import Group
-from pipeline.run.survey import Survey
+from deamat.core.config import Config
+from deamat.core.ledger import FileEntry, Status
+from deamat.run.book import Book
+from deamat.run.folders import Folders
+from deamat.run.measure import Group
+from deamat.run.survey import Survey
 
 
 def describe(

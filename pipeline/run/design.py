@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from pipeline.actuator.compositions import compare as compare_all
-from pipeline.actuator.compositions import pareto as pareto_front
-from pipeline.actuator.declared import Designs, load_designs
-from pipeline.actuator.design import Request
-from pipeline.actuator.design import design as answer
-from pipeline.actuator.present import (
+from deamat.actuator.compositions import compare as compare_all
+from deamat.actuator.compositions import pareto as pareto_front
+from deamat.actuator.declared import Designs, load_designs
+from deamat.actuator.design import Request
+from deamat.actuator.design import design as answer
+from deamat.actuator.present import (
     compositions_document,
     compositions_text,
     design_document,
@@ -20,11 +20,11 @@ from pipeline.actuator.present import (
     pareto_document,
     pareto_text,
 )
-from pipeline.core.errors import ConfigError
-from pipeline.core.units import from_si, read_quantity
-from pipeline.materials.card import MaterialCard, read_card
-from pipeline.materials.database import open_database
-from pipeline.run.folders import Folders
+from deamat.core.errors import ConfigError
+from deamat.core.units import from_si, read_quantity
+from deamat.materials.card import MaterialCard, read_card
+from deamat.materials.database import open_database
+from deamat.run.folders import Folders
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +51,7 @@ def run_design(
     Raises
     ------
     ConfigError : something that a design needs is neither asked for nor declared
-    PipelineError : as `pipeline.actuator.design.design`
+    PipelineError : as `deamat.actuator.design.design`
     """
     declared = load_designs(folders.config)
     request = request_of(asked, declared)
@@ -69,7 +69,7 @@ def run_design(
         document["pareto"] = pareto_document(front, marked)
         text += "\n" + pareto_text(front, marked)
     if figures is not None and compared is not None and front is not None:
-        from pipeline.report import design as draw
+        from deamat.report import design as draw
 
         film = f"films of {from_si(request.de_thickness_m, 'um'):.4g} um"
         name = f"design-{request.de}-on-{request.passive}"

@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
-from pipeline.core.present import readable_conditions
-from pipeline.core.records import Measurement, Summary
-from pipeline.run.book import STALE
-from pipeline.run.measure import Bench, Group
-from pipeline.techniques import TECHNIQUES
+from deamat.core.present import readable_conditions
+from deamat.core.records import Measurement, Summary
+from deamat.run.book import STALE
+from deamat.run.measure import Bench, Group
+from deamat.techniques import TECHNIQUES
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,8 +86,8 @@ def draw_all(jobs: Sequence[FigureJob], folder: Path, bench: Bench) -> None:
 
 def draw_one(folder: Path, job: FigureJob) -> None:
     """Draw one figure as SVG and PNG."""
-    from pipeline.report.figures import moduli_figure, technique_figure  # matplotlib
-    from pipeline.report.moduli import modulus_bars
+    from deamat.report.figures import moduli_figure, technique_figure  # matplotlib
+    from deamat.report.moduli import modulus_bars
 
     place = folder / job.name
     place.parent.mkdir(parents=True, exist_ok=True)

@@ -9,18 +9,18 @@ from dataclasses import dataclass, field
 from graphlib import TopologicalSorter
 from typing import TypeVar
 
-from pipeline.core.config import Config
-from pipeline.core.config import digest as config_digest
-from pipeline.core.instruments import Machine
-from pipeline.core.properties import REFERENCE_AGE
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import Condition, Law, Measurement, PropertyRecord, Specimen, Summary
-from pipeline.core.technique import Context, Technique
-from pipeline.formats import FORMATS
-from pipeline.run.book import STALE, Book, digest, key_of
-from pipeline.run.folders import Folders
-from pipeline.run.survey import Survey
-from pipeline.run.work import FILES_PER_TASK, Reduced, Task, reduce_all
+from deamat.core.config import Config
+from deamat.core.config import digest as config_digest
+from deamat.core.instruments import Machine
+from deamat.core.properties import REFERENCE_AGE
+from deamat.core.quantity import Quantity
+from deamat.core.records import Condition, Law, Measurement, PropertyRecord, Specimen, Summary
+from deamat.core.technique import Context, Technique
+from deamat.formats import FORMATS
+from deamat.run.book import STALE, Book, digest, key_of
+from deamat.run.folders import Folders
+from deamat.run.survey import Survey
+from deamat.run.work import FILES_PER_TASK, Reduced, Task, reduce_all
 
 # Raise it when the driver itself may give another answer from the same file, room and settings.
 SPINE_VERSION = 1

@@ -9,22 +9,22 @@ from contextlib import ExitStack
 from dataclasses import replace
 from typing import Any
 
-from pipeline import __version__
-from pipeline.core.campaign import find_campaigns
-from pipeline.core.config import Config, load_config
-from pipeline.core.errors import ConfigError
-from pipeline.core.ledger import FileEntry, Provenance
-from pipeline.formats import FORMATS
-from pipeline.run.book import Book, key_of
-from pipeline.run.describe import describe
-from pipeline.run.folders import Folders, Stat, locate
-from pipeline.run.measure import Bench, Group, Measured, Progress, in_order, measure, summarise
-from pipeline.run.publish import publish
-from pipeline.run.published import listing
-from pipeline.run.release import Release
-from pipeline.run.state import State
-from pipeline.run.survey import Survey, survey
-from pipeline.techniques import TECHNIQUES
+from deamat import __version__
+from deamat.core.campaign import find_campaigns
+from deamat.core.config import Config, load_config
+from deamat.core.errors import ConfigError
+from deamat.core.ledger import FileEntry, Provenance
+from deamat.formats import FORMATS
+from deamat.run.book import Book, key_of
+from deamat.run.describe import describe
+from deamat.run.folders import Folders, Stat, locate
+from deamat.run.measure import Bench, Group, Measured, Progress, in_order, measure, summarise
+from deamat.run.publish import publish
+from deamat.run.published import listing
+from deamat.run.release import Release
+from deamat.run.state import State
+from deamat.run.survey import Survey, survey
+from deamat.techniques import TECHNIQUES
 
 
 def hash_inputs(

@@ -8,14 +8,14 @@ from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
 
-from pipeline.core.ledger import FileEntry, Provenance
-from pipeline.materials.card import Credit, MaterialCard
-from pipeline.materials.curves import write_curves
-from pipeline.materials.database import write_database
-from pipeline.run.book import STALE, Redo, digest, key_of
-from pipeline.run.draw import FigureJob, draw_all, figure_jobs
-from pipeline.run.measure import Bench, Group
-from pipeline.run.release import Release
+from deamat.core.ledger import FileEntry, Provenance
+from deamat.materials.card import Credit, MaterialCard
+from deamat.materials.curves import write_curves
+from deamat.materials.database import write_database
+from deamat.run.book import STALE, Redo, digest, key_of
+from deamat.run.draw import FigureJob, draw_all, figure_jobs
+from deamat.run.measure import Bench, Group
+from deamat.run.release import Release
 
 # Raise it when the same records would give another file.
 OUTPUT_VERSION = 1

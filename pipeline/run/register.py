@@ -6,10 +6,10 @@ import hashlib
 from dataclasses import dataclass
 from pathlib import Path
 
-from pipeline.core.atomic import write_atomically
-from pipeline.core.campaign import CAMPAIGN_FILE, MANIFEST_FILE
-from pipeline.core.errors import ConfigError
-from pipeline.core.manifest import compare, format_manifest, parse_manifest
+from deamat.core.atomic import write_atomically
+from deamat.core.campaign import CAMPAIGN_FILE, MANIFEST_FILE
+from deamat.core.errors import ConfigError
+from deamat.core.manifest import compare, format_manifest, parse_manifest
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ import os
 import shutil
 from pathlib import Path
 
-from pipeline.run.published import FACES, as_listed, known, leads_to
+from deamat.run.published import FACES, as_listed, known, leads_to
 
 _KEPT = 3  # releases beside the current one; an auditor may look back, a disk must not fill
 

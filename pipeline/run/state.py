@@ -13,8 +13,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO
 
-from pipeline.core.errors import ConfigError
-from pipeline.run.folders import Stat
+from deamat.core.errors import ConfigError
+from deamat.run.folders import Stat
 
 _SCHEMA = """
 CREATE TABLE IF NOT EXISTS input(path TEXT PRIMARY KEY, size INT, mtime_ns INT, sha256 TEXT);

@@ -9,15 +9,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from pipeline.core.campaign import CAMPAIGN_FILE, MANIFEST_FILE, Campaign, load_campaign
-from pipeline.core.config import Config
-from pipeline.core.errors import RawFileError
-from pipeline.core.ledger import FileEntry, Role
-from pipeline.core.manifest import Difference, compare, parse_manifest
-from pipeline.core.records import Specimen
-from pipeline.core.register import REGISTER_FILES, read_register
-from pipeline.core.technique import Technique
-from pipeline.formats.documentation import stated_units
+from deamat.core.campaign import CAMPAIGN_FILE, MANIFEST_FILE, Campaign, load_campaign
+from deamat.core.config import Config
+from deamat.core.errors import RawFileError
+from deamat.core.ledger import FileEntry, Role
+from deamat.core.manifest import Difference, compare, parse_manifest
+from deamat.core.records import Specimen
+from deamat.core.register import REGISTER_FILES, read_register
+from deamat.core.technique import Technique
+from deamat.formats.documentation import stated_units
 
 _DOCUMENTS = (".md", ".pdf", ".rst")
 

@@ -6,14 +6,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from pipeline.core.errors import ConfigError, RawFileError
-from pipeline.core.records import Flag, Measurement, Recording, Specimen
-from pipeline.core.technique import Context
-from pipeline.formats.detect import by_name, detect
-from pipeline.formats.documentation import contradictions
-from pipeline.formats.format import Format
-from pipeline.formats.rawfile import RawFile, whole_file
-from pipeline.techniques import TECHNIQUES
+from deamat.core.errors import ConfigError, RawFileError
+from deamat.core.records import Flag, Measurement, Recording, Specimen
+from deamat.core.technique import Context
+from deamat.formats.detect import by_name, detect
+from deamat.formats.documentation import contradictions
+from deamat.formats.format import Format
+from deamat.formats.rawfile import RawFile, whole_file
+from deamat.techniques import TECHNIQUES
 
 FILES_PER_TASK = 25
 

@@ -1,7 +1,7 @@
 """The rooms: one module per technique, and the one list of them."""
 
-from pipeline.core.technique import Technique
-from pipeline.techniques import (
+from deamat.core.technique import Technique
+from deamat.techniques import (
     breakdown,
     compression,
     handling,

@@ -6,10 +6,10 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 
-from pipeline.core.errors import FitRefused
-from pipeline.core.quantity import Contribution
-from pipeline.core.records import Condition, Flag, Law, PropertyRecord, Refusal
-from pipeline.core.units import from_si
+from deamat.core.errors import FitRefused
+from deamat.core.quantity import Contribution
+from deamat.core.records import Condition, Flag, Law, PropertyRecord, Refusal
+from deamat.core.units import from_si
 
 KEY = "viscosity_at_handling_time"
 VISCOSITY = "viscosity"

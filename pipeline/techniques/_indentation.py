@@ -9,14 +9,15 @@ from dataclasses import dataclass
 import numpy as np
 from pydantic import Field
 
-from pipeline.core.errors import FitRefused
-from pipeline.core.instruments import Declared, Machine
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import Flag, FloatArray, Recording, Specimen
-from pipeline.core.stress_strain import register_length
-from pipeline.core.units import from_si
-from pipeline.estimators.contact import Contact, fit_contact
-from pipeline.estimators.slope import FEW_INDEPENDENT
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
+from deamat.core.instruments import Declared, Machine
+from deamat.core.quantity import Quantity
+from deamat.core.records import Flag, Recording, Specimen
+from deamat.core.stress_strain import register_length
+from deamat.core.units import from_si
+from deamat.estimators.curves.contact import Contact, fit_contact
+from deamat.estimators.curves.slope import FEW_INDEPENDENT
 
 # shape -> how the load of an elastic half-space rises with depth
 EXPONENTS = {"flat": 1.0, "spherical": 1.5, "berkovich": 2.0}

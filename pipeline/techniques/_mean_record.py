@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 
-from pipeline.core.errors import FitRefused
-from pipeline.core.properties import property_key
-from pipeline.core.quantity import Contribution, Quantity
-from pipeline.core.records import (
+from deamat.core.errors import FitRefused
+from deamat.core.properties import property_key
+from deamat.core.quantity import Contribution, Quantity
+from deamat.core.records import (
     Condition,
     Detail,
     Flag,
@@ -18,7 +18,7 @@ from pipeline.core.records import (
     PropertyRecord,
     Summary,
 )
-from pipeline.estimators.mean import mean_with_shared, outliers
+from deamat.estimators.mean import mean_with_shared, outliers
 
 Pair = tuple[Measurement, MeasuredValue]
 

@@ -10,7 +10,8 @@ from operator import attrgetter
 
 import numpy as np
 
-from pipeline.core.records import FloatArray, Measurement, Specimen
+from deamat.core.arrays import FloatArray
+from deamat.core.records import Measurement, Specimen
 
 RUN_COLUMNS = ("batch", "mixed_at")  # what tells two runs of one material apart
 

@@ -8,13 +8,13 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field
 
-from pipeline.core.errors import FitRefused
-from pipeline.core.instruments import Declared
-from pipeline.core.quantity import Contribution, Quantity
-from pipeline.core.records import (
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
+from deamat.core.instruments import Declared
+from deamat.core.quantity import Contribution, Quantity
+from deamat.core.records import (
     Condition,
     Flag,
-    FloatArray,
     MeasuredValue,
     Measurement,
     Recording,
@@ -22,9 +22,9 @@ from pipeline.core.records import (
     Source,
     Specimen,
 )
-from pipeline.core.stress_strain import IndexArray, StressStrain
-from pipeline.estimators.curve import reloads
-from pipeline.estimators.slope import FEW_INDEPENDENT, Line, fit_line, outlying
+from deamat.core.stress_strain import IndexArray, StressStrain
+from deamat.estimators.curves.slope import FEW_INDEPENDENT, Line, fit_line, outlying
+from deamat.estimators.curves.stress_strain import reloads
 
 
 def _rising(window: tuple[float, float]) -> tuple[float, float]:

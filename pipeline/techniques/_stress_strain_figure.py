@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.core.records import Detail, MeasuredValue, Measurement
-from pipeline.core.units import from_si
+from deamat.core.records import Detail, MeasuredValue, Measurement
+from deamat.core.units import from_si
 
 _MPA_FROM = 1e6  # from this stress on, MPa reads better than kPa
 

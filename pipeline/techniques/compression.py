@@ -9,13 +9,13 @@ from typing import Any
 
 from pydantic import Field
 
-from pipeline.core.errors import FitRefused
-from pipeline.core.quantity import Contribution
-from pipeline.core.records import (
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
+from deamat.core.quantity import Contribution
+from deamat.core.records import (
     Condition,
     Detail,
     Flag,
-    FloatArray,
     MeasuredValue,
     Measurement,
     Recording,
@@ -23,15 +23,16 @@ from pipeline.core.records import (
     Specimen,
     Summary,
 )
-from pipeline.core.stress_strain import (
+from deamat.core.stress_strain import (
     StressStrain,
     circular_section,
     disagreement,
     register_length,
     stress_strain,
 )
-from pipeline.core.technique import Context, Technique
-from pipeline.estimators.curve import (
+from deamat.core.technique import Context, Technique
+from deamat.estimators.curves.slope import Line, curvature
+from deamat.estimators.curves.stress_strain import (
     MISSABLE,
     Bins,
     bin_slopes,
@@ -39,9 +40,8 @@ from pipeline.estimators.curve import (
     window,
     zero_of_tangent,
 )
-from pipeline.estimators.slope import Line, curvature
-from pipeline.techniques._mean_record import summarise_by_mean
-from pipeline.techniques._stress_strain import (
+from deamat.techniques._mean_record import summarise_by_mean
+from deamat.techniques._stress_strain import (
     CurveConfig,
     StrainWindow,
     conditions_of_test,
@@ -53,7 +53,7 @@ from pipeline.techniques._stress_strain import (
     refusal,
     rising_line,
 )
-from pipeline.techniques._stress_strain_figure import draw_curves
+from deamat.techniques._stress_strain_figure import draw_curves
 
 MODULUS = "compressive_modulus"
 COMPENSATED = "compressive_modulus_toe_compensated"

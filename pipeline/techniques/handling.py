@@ -18,10 +18,10 @@ from typing import Any
 
 from pydantic import Field
 
-from pipeline.core.instruments import Declared
-from pipeline.core.properties import property_key
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import (
+from deamat.core.instruments import Declared
+from deamat.core.properties import property_key
+from deamat.core.quantity import Quantity
+from deamat.core.records import (
     Detail,
     Flag,
     Measurement,
@@ -32,12 +32,12 @@ from pipeline.core.records import (
     Specimen,
     Summary,
 )
-from pipeline.core.register import RegisterForm
-from pipeline.core.technique import Context, Technique
-from pipeline.core.units import from_si
-from pipeline.techniques._handling_viscosity import KEY as VISCOSITY_THEN
-from pipeline.techniques._handling_viscosity import VISCOSITY, viscosity_then
-from pipeline.techniques._printed_lines import RUN_COLUMNS, Line, Run, line_of, runs_of
+from deamat.core.register import RegisterForm
+from deamat.core.technique import Context, Technique
+from deamat.core.units import from_si
+from deamat.techniques._handling_viscosity import KEY as VISCOSITY_THEN
+from deamat.techniques._handling_viscosity import VISCOSITY, viscosity_then
+from deamat.techniques._printed_lines import RUN_COLUMNS, Line, Run, line_of, runs_of
 
 KEY = "handling_time"
 VERSION = 2

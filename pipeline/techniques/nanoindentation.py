@@ -10,24 +10,24 @@ from typing import Any
 import numpy as np
 from pydantic import Field
 
-from pipeline.core.errors import FitRefused
-from pipeline.core.instruments import Machine
-from pipeline.core.quantity import Contribution, Quantity
-from pipeline.core.records import (
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
+from deamat.core.instruments import Machine
+from deamat.core.quantity import Contribution, Quantity
+from deamat.core.records import (
     Detail,
     Flag,
-    FloatArray,
     MeasuredValue,
     Measurement,
     Recording,
     Specimen,
     Summary,
 )
-from pipeline.core.technique import Context, Technique
-from pipeline.core.units import from_si
-from pipeline.estimators.contact import Contact
-from pipeline.estimators.unloading import fit_unloading
-from pipeline.techniques._indentation import (
+from deamat.core.technique import Context, Technique
+from deamat.core.units import from_si
+from deamat.estimators.curves.contact import Contact
+from deamat.estimators.curves.unloading import fit_unloading
+from deamat.techniques._indentation import (
     Approach,
     ContactConfig,
     Tip,
@@ -38,8 +38,8 @@ from pipeline.techniques._indentation import (
     fitted_contact,
     size_flags,
 )
-from pipeline.techniques._mean_record import summarise_by_mean
-from pipeline.techniques._stress_strain import (
+from deamat.techniques._mean_record import summarise_by_mean
+from deamat.techniques._stress_strain import (
     line_span,
     nothing_measured,
     recorded,

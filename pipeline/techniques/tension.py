@@ -8,9 +8,9 @@ from typing import Any
 
 from pydantic import Field
 
-from pipeline.core.errors import FitRefused
-from pipeline.core.quantity import Contribution, Quantity
-from pipeline.core.records import (
+from deamat.core.errors import FitRefused
+from deamat.core.quantity import Contribution, Quantity
+from deamat.core.records import (
     Condition,
     Flag,
     MeasuredValue,
@@ -20,17 +20,17 @@ from pipeline.core.records import (
     Specimen,
     Summary,
 )
-from pipeline.core.stress_strain import (
+from deamat.core.stress_strain import (
     StressStrain,
     disagreement,
     rectangular_section,
     register_length,
     stress_strain,
 )
-from pipeline.core.technique import Context, Technique
-from pipeline.estimators.curve import Break, find_break, loading_branch, window
-from pipeline.techniques._mean_record import summarise_by_mean
-from pipeline.techniques._stress_strain import (
+from deamat.core.technique import Context, Technique
+from deamat.estimators.curves.stress_strain import Break, find_break, loading_branch, window
+from deamat.techniques._mean_record import summarise_by_mean
+from deamat.techniques._stress_strain import (
     CurveConfig,
     StrainWindow,
     conditions_of_test,
@@ -44,7 +44,7 @@ from pipeline.techniques._stress_strain import (
     relative_lines,
     rising_line,
 )
-from pipeline.techniques._stress_strain_figure import draw_curves
+from deamat.techniques._stress_strain_figure import draw_curves
 
 MODULUS = "tensile_modulus"
 STRENGTH = "tensile_strength"

@@ -27,15 +27,15 @@ from datetime import date
 
 import numpy as np
 
-from pipeline.core.properties import REFERENCE_AGE
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import FloatArray
-from pipeline.core.units import from_si
-from pipeline.estimators.weibull import quantile
-from pipeline.twin.draws import Calibration, draw_calibration, on_grid, read_micrometer, stream
-from pipeline.twin.part import SYNTHETIC, Part
-from pipeline.twin.truth import TrueValue, true_value
-from pipeline.twin.writers import daq_ramp_log, ramp_csv, register_csv
+from deamat.core.arrays import FloatArray
+from deamat.core.properties import REFERENCE_AGE
+from deamat.core.quantity import Quantity
+from deamat.core.units import from_si
+from deamat.estimators.weibull.fit import quantile
+from deamat.twin.draws import Calibration, draw_calibration, on_grid, read_micrometer, stream
+from deamat.twin.part import SYNTHETIC, Part
+from deamat.twin.truth import TrueValue, true_value
+from deamat.twin.writers import daq_ramp_log, ramp_csv, register_csv
 
 TECHNIQUE = "breakdown"
 SPECIMENS = 20

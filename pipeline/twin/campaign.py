@@ -10,17 +10,17 @@ from dataclasses import asdict
 from functools import reduce
 from pathlib import Path
 
-from pipeline.core.errors import ConfigError
-from pipeline.twin.breakdown import breakdown_part
-from pipeline.twin.compression import compression_part
-from pipeline.twin.handling import handling_part
-from pipeline.twin.nanoindentation import nanoindentation_part
-from pipeline.twin.part import SYNTHETIC, Part
-from pipeline.twin.permittivity import permittivity_part
-from pipeline.twin.quirks import Quirk
-from pipeline.twin.tension import tension_part
-from pipeline.twin.viscosity import viscosity_part
-from pipeline.twin.writers import manifest
+from deamat.core.errors import ConfigError
+from deamat.twin.breakdown import breakdown_part
+from deamat.twin.compression import compression_part
+from deamat.twin.handling import handling_part
+from deamat.twin.nanoindentation import nanoindentation_part
+from deamat.twin.part import SYNTHETIC, Part
+from deamat.twin.permittivity import permittivity_part
+from deamat.twin.quirks import Quirk
+from deamat.twin.tension import tension_part
+from deamat.twin.viscosity import viscosity_part
+from deamat.twin.writers import manifest
 
 NAME = "sylgard-2022-twin"
 # The first from 2022 on whose every 95 % interval holds its truth: docs/adr/0007-committed-seed.md

@@ -22,11 +22,11 @@ from functools import cache, partial
 
 import numpy as np
 
-from pipeline.core.properties import REFERENCE_AGE
-from pipeline.core.quantity import Quantity
-from pipeline.core.units import from_si
-from pipeline.twin.curves import compensated_slope, compressive_stress
-from pipeline.twin.draws import (
+from deamat.core.properties import REFERENCE_AGE
+from deamat.core.quantity import Quantity
+from deamat.core.units import from_si
+from deamat.twin.curves import compensated_slope, compressive_stress
+from deamat.twin.draws import (
     cell_noise,
     draw_calibration,
     draw_factors,
@@ -34,9 +34,9 @@ from pipeline.twin.draws import (
     read_caliper,
     stream,
 )
-from pipeline.twin.part import SYNTHETIC, Part, SimulatedTest
-from pipeline.twin.truth import AGED, TrueValue, materials, true_value, truth_table
-from pipeline.twin.writers import chatillon_log, register_csv
+from deamat.twin.part import SYNTHETIC, Part, SimulatedTest
+from deamat.twin.truth import AGED, TrueValue, materials, true_value, truth_table
+from deamat.twin.writers import chatillon_log, register_csv
 
 TECHNIQUE = "compression"
 SPECIMENS = 5

@@ -8,9 +8,9 @@ from functools import cache
 
 import numpy as np
 
-from pipeline.core.errors import OutOfRange
-from pipeline.core.records import FloatArray
-from pipeline.estimators.curve import bin_slopes, zero_of_tangent
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import OutOfRange
+from deamat.estimators.curves.stress_strain import bin_slopes, zero_of_tangent
 
 COMPRESSION_WINDOW = 0.05
 TENSION_WINDOW = 0.01

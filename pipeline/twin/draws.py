@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.random import PCG64, Generator, SeedSequence
 
-from pipeline.core.errors import ConfigError
-from pipeline.core.instruments import Gauge, Machine
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import FloatArray
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import ConfigError
+from deamat.core.instruments import Gauge, Machine
+from deamat.core.quantity import Quantity
 
 # The errors are drawn from the standard uncertainties that `config/instruments.toml` declares: only
 # then can the stated intervals cover the truth as often as they say.

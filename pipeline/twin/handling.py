@@ -16,12 +16,12 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from pipeline.core.properties import property_key
-from pipeline.core.units import to_si
-from pipeline.twin.draws import Calibration, stream
-from pipeline.twin.part import SYNTHETIC, Part
-from pipeline.twin.truth import TrueValue, document
-from pipeline.twin.writers import register_csv
+from deamat.core.properties import property_key
+from deamat.core.units import to_si
+from deamat.twin.draws import Calibration, stream
+from deamat.twin.part import SYNTHETIC, Part
+from deamat.twin.truth import TrueValue, document
+from deamat.twin.writers import register_csv
 
 TECHNIQUE = "handling"
 KEY = "handling_time"

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from pipeline.core.errors import ConfigError
-from pipeline.twin.quirks import Quirk, altered
+from deamat.core.errors import ConfigError
+from deamat.twin.quirks import Quirk, altered
 
 OVER_RANGE = "9.90000e+37"  # what SCPI instruments send for "over range"
 MICRO_SIGN, GREEK_MU = "\u00b5", "\u03bc"

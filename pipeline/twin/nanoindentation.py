@@ -24,11 +24,11 @@ from datetime import date, datetime, time, timedelta
 
 import numpy as np
 
-from pipeline.core.properties import REFERENCE_AGE, property_key
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import FloatArray
-from pipeline.core.units import from_si
-from pipeline.twin.draws import (
+from deamat.core.arrays import FloatArray
+from deamat.core.properties import REFERENCE_AGE, property_key
+from deamat.core.quantity import Quantity
+from deamat.core.units import from_si
+from deamat.twin.draws import (
     cell_noise,
     draw_calibration,
     draw_factors,
@@ -36,9 +36,9 @@ from pipeline.twin.draws import (
     read_caliper,
     stream,
 )
-from pipeline.twin.part import SYNTHETIC, Part, SimulatedTest
-from pipeline.twin.truth import TrueValue, document, materials, true_value
-from pipeline.twin.writers import hysitron_text, register_csv
+from deamat.twin.part import SYNTHETIC, Part, SimulatedTest
+from deamat.twin.truth import TrueValue, document, materials, true_value
+from deamat.twin.writers import hysitron_text, register_csv
 
 TECHNIQUE = "nanoindentation"
 MODULUS = "indentation_modulus"

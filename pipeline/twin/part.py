@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import FloatArray
-from pipeline.twin.draws import Calibration
-from pipeline.twin.truth import TrueValue
+from deamat.core.arrays import FloatArray
+from deamat.core.quantity import Quantity
+from deamat.twin.draws import Calibration
+from deamat.twin.truth import TrueValue
 
 # Said in every register row and every header that has room for it.
 SYNTHETIC = "SYNTHETIC: simulated, not measured"

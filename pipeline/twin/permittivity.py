@@ -28,15 +28,15 @@ from datetime import date
 import numpy as np
 from numpy.random import Generator
 
-from pipeline.core.instruments import LcrAccuracy
-from pipeline.core.properties import REFERENCE_AGE
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import FloatArray
-from pipeline.core.units import from_si
-from pipeline.estimators.edge_field import vacuum_capacitance
-from pipeline.estimators.impedance import ComplexArray, impedance, loss_tangent, shown
-from pipeline.estimators.squeeze import squeezed_stretch
-from pipeline.twin.draws import (
+from deamat.core.arrays import FloatArray
+from deamat.core.instruments import LcrAccuracy
+from deamat.core.properties import REFERENCE_AGE
+from deamat.core.quantity import Quantity
+from deamat.core.units import from_si
+from deamat.estimators.dielectric.edge_field import vacuum_capacitance
+from deamat.estimators.dielectric.impedance import ComplexArray, impedance, loss_tangent, shown
+from deamat.estimators.dielectric.squeeze import squeezed_stretch
+from deamat.twin.draws import (
     Calibration,
     draw_calibration,
     draw_factors,
@@ -44,9 +44,9 @@ from pipeline.twin.draws import (
     read_micrometer,
     stream,
 )
-from pipeline.twin.part import SYNTHETIC, Part
-from pipeline.twin.truth import TrueValue, materials, true_value, truth_table
-from pipeline.twin.writers import lcr6000_log, lcr_csv, register_csv
+from deamat.twin.part import SYNTHETIC, Part
+from deamat.twin.truth import TrueValue, materials, true_value, truth_table
+from deamat.twin.writers import lcr6000_log, lcr_csv, register_csv
 
 TECHNIQUE = "permittivity"
 SPECIMENS = 5

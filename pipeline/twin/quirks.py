@@ -11,8 +11,8 @@ import csv
 import io
 from collections.abc import Callable, Mapping
 
-from pipeline.core.errors import ConfigError
-from pipeline.twin.writers import register_csv
+from deamat.core.errors import ConfigError
+from deamat.twin.writers import register_csv
 
 Quirk = Callable[[Mapping[str, bytes]], Mapping[str, bytes]]
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from pipeline.core.errors import ConfigError
-from pipeline.twin.quirks import Quirk, altered
+from deamat.core.errors import ConfigError
+from deamat.twin.quirks import Quirk, altered
 
 _LIMIT_V, _HELD_ROWS = 20e3, 4
 _Table = list[list[float]]

@@ -23,12 +23,12 @@ from datetime import date
 
 import numpy as np
 
-from pipeline.core.properties import REFERENCE_AGE
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import FloatArray
-from pipeline.core.units import from_si
-from pipeline.twin.curves import LINEAR_TO, tensile_stress
-from pipeline.twin.draws import (
+from deamat.core.arrays import FloatArray
+from deamat.core.properties import REFERENCE_AGE
+from deamat.core.quantity import Quantity
+from deamat.core.units import from_si
+from deamat.twin.curves import LINEAR_TO, tensile_stress
+from deamat.twin.draws import (
     cell_noise,
     draw_calibration,
     draw_factors,
@@ -37,9 +37,9 @@ from pipeline.twin.draws import (
     read_micrometer,
     stream,
 )
-from pipeline.twin.part import SYNTHETIC, Part, SimulatedTest
-from pipeline.twin.truth import materials, true_value, truth_table
-from pipeline.twin.writers import bluehill_csv, register_csv
+from deamat.twin.part import SYNTHETIC, Part, SimulatedTest
+from deamat.twin.truth import materials, true_value, truth_table
+from deamat.twin.writers import bluehill_csv, register_csv
 
 TECHNIQUE = "tension"
 SPECIMENS = 5

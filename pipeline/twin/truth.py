@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 
-from pipeline.core.errors import MissingProperty
-from pipeline.core.properties import REFERENCE_AGE
-from pipeline.core.records import FloatArray
-from pipeline.core.units import si_factor, to_si
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import MissingProperty
+from deamat.core.properties import REFERENCE_AGE
+from deamat.core.units import si_factor, to_si
 
 AGED = "2 months"
 SECONDS_PER_HOUR = 3600.0
@@ -56,7 +56,7 @@ class TrueValue:
 @cache
 def document() -> dict[str, Any]:
     """Read `truth.toml`."""
-    return tomllib.loads((files("pipeline.twin") / "truth.toml").read_text("utf-8"))
+    return tomllib.loads((files("deamat.twin") / "truth.toml").read_text("utf-8"))
 
 
 @cache
@@ -125,7 +125,7 @@ def true_viscosities() -> dict[str, TrueViscosity]:
 
     Source: Sikulskyi et al. 2022, Front. Robot. AI 9:1034914, Table 2 (CC BY).
     """
-    document = tomllib.loads((files("pipeline.twin") / "truth.toml").read_text("utf-8"))
+    document = tomllib.loads((files("deamat.twin") / "truth.toml").read_text("utf-8"))
     found = {}
     for material, said in document["viscosity"].items():
         newtonian = "index_low_to_high" not in said

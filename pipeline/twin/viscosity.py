@@ -37,14 +37,14 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from pipeline.core.errors import MissingProperty
-from pipeline.core.instruments import Machine
-from pipeline.core.records import FloatArray
-from pipeline.core.viscometer import SPEEDS_RPM, full_scale_Pas
-from pipeline.twin.draws import Calibration, stream
-from pipeline.twin.part import SYNTHETIC, Part
-from pipeline.twin.truth import SECONDS_PER_HOUR, TrueValue, TrueViscosity, true_viscosities
-from pipeline.twin.writers import ndj8s_log, register_csv, viscometer_csv
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import MissingProperty
+from deamat.core.instruments import Machine
+from deamat.core.viscometer import SPEEDS_RPM, full_scale_Pas
+from deamat.twin.draws import Calibration, stream
+from deamat.twin.part import SYNTHETIC, Part
+from deamat.twin.truth import SECONDS_PER_HOUR, TrueValue, TrueViscosity, true_viscosities
+from deamat.twin.writers import ndj8s_log, register_csv, viscometer_csv
 
 TECHNIQUE = "viscosity"
 BATCHES = 3

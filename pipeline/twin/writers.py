@@ -10,7 +10,7 @@ from datetime import datetime
 
 import numpy as np
 
-from pipeline.core.records import FloatArray
+from deamat.core.arrays import FloatArray
 
 _DAYS = ("Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun")
 _MONTHS = (

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from pipeline.actuator.declared import Designs, load_designs
-from pipeline.core.quantity import Contribution, Quantity
-from pipeline.core.records import Condition, Origin, PropertyRecord
-from pipeline.materials.card import Credit, MaterialCard
+from deamat.actuator.declared import Designs, load_designs
+from deamat.core.quantity import Contribution, Quantity
+from deamat.core.records import Condition, Origin, PropertyRecord
+from deamat.materials.card import Credit, MaterialCard
 
 ROOT = Path(__file__).resolve().parents[2]
 STATE: dict[str, Condition] = {"age": "after cure", "cure": "2 h at 90 C"}

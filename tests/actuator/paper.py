@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from pipeline.actuator.figure_of_merit import Unimorph
+from deamat.actuator.figure_of_merit import Unimorph
 
 POISSON_RATIO = 0.49
 UM, MPA = 1e-6, 1e6

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from pipeline.actuator.figure_of_merit import Unimorph
-from pipeline.actuator.ranges import Reals
-from pipeline.actuator.stack import Layer, Role, Stack
+from deamat.actuator.figure_of_merit import Unimorph
+from deamat.actuator.ranges import Reals
+from deamat.actuator.stack import Layer, Role, Stack
 
 WIDTH_m = 0.01
 DENSITY_kg_m3 = 1030.0

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pipeline.actuator.beam import (
+from deamat.actuator.beam import (
     Beam,
     actuate,
     bend,
@@ -16,8 +16,8 @@ from pipeline.actuator.beam import (
     neutral_axis,
     weight,
 )
-from pipeline.actuator.figure_of_merit import single_layer
-from pipeline.actuator.stack import (
+from deamat.actuator.figure_of_merit import single_layer
+from deamat.actuator.stack import (
     FIRST_LAYER_DOWN,
     FIRST_LAYER_UP,
     HANGING,
@@ -27,8 +27,8 @@ from pipeline.actuator.stack import (
     Role,
     Stack,
 )
-from pipeline.actuator.strain import film_drive, thickness_strain
-from pipeline.core.errors import MissingProperty, OutOfRange
+from deamat.actuator.strain import film_drive, thickness_strain
+from deamat.core.errors import MissingProperty, OutOfRange
 
 from .stacks import layer, random_unimorphs, stacked, strip
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from pipeline.actuator.beam import bend
+from deamat.actuator.beam import bend
 
 from .stacks import strip
 

@@ -11,20 +11,20 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pipeline.actuator.compositions import compare, pareto
-from pipeline.actuator.declared import load_designs
-from pipeline.actuator.design import Request, design
-from pipeline.actuator.ingredients import MixedConditions
-from pipeline.actuator.present import (
+from deamat.actuator.compositions import compare, pareto
+from deamat.actuator.declared import load_designs
+from deamat.actuator.design import Request, design
+from deamat.actuator.ingredients import MixedConditions
+from deamat.actuator.present import (
     compositions_text,
     design_document,
     design_text,
     pareto_document,
     pareto_text,
 )
-from pipeline.core.errors import ConfigError, MissingProperty, OutOfRange
-from pipeline.core.records import Condition
-from pipeline.materials.card import MaterialCard
+from deamat.core.errors import ConfigError, MissingProperty, OutOfRange
+from deamat.core.records import Condition
+from deamat.materials.card import MaterialCard
 
 from .cards import ROOT, STATE, card, cards, declared, record
 

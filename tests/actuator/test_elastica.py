@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_bvp, solve_ivp
 from scipy.special import jv
 
-from pipeline.actuator.beam import actuate, deflection, displacement
-from pipeline.actuator.elastica import MAX_LOAD, deflect, solve
-from pipeline.actuator.equilibrium import SELF_BUCKLING_LOAD
-from pipeline.actuator.stack import FIRST_LAYER_DOWN, HANGING, ON_EDGE, STANDING, Orientation
-from pipeline.core.errors import FitRefused, OutOfRange
+from deamat.actuator.beam import actuate, deflection, displacement
+from deamat.actuator.elastica import MAX_LOAD, deflect, solve
+from deamat.actuator.equilibrium import SELF_BUCKLING_LOAD
+from deamat.actuator.stack import FIRST_LAYER_DOWN, HANGING, ON_EDGE, STANDING, Orientation
+from deamat.core.errors import FitRefused, OutOfRange
 
 from .stacks import strip
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pipeline.actuator.beam import bend
-from pipeline.actuator.figure_of_merit import (
+from deamat.actuator.beam import bend
+from deamat.actuator.figure_of_merit import (
     Unimorph,
     dea_strain,
     multilayer,
@@ -14,8 +14,8 @@ from pipeline.actuator.figure_of_merit import (
     planar,
     single_layer,
 )
-from pipeline.actuator.strain import drive, paper_eq4, pull_in_field, thickness_strain
-from pipeline.core.errors import OutOfRange
+from deamat.actuator.strain import drive, paper_eq4, pull_in_field, thickness_strain
+from deamat.core.errors import OutOfRange
 
 from .paper import ARAROMI_2012, DESIGN_1, DESIGN_2, POISSON_RATIO, SIKULSKYI_2020
 from .stacks import random_unimorphs, stacked

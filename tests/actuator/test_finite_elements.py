@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pipeline.actuator.beam import bend
+from deamat.actuator.beam import bend
 
 from .stacks import strip
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pipeline.actuator.ladder import (
+from deamat.actuator.ladder import (
     NEGLECTS,
     Actuator,
     Aim,
@@ -17,9 +17,9 @@ from pipeline.actuator.ladder import (
     errors,
     evaluate,
 )
-from pipeline.actuator.stack import FIRST_LAYER_DOWN, ON_EDGE, STANDING, Orientation, Stack
-from pipeline.actuator.strain import pull_in_voltage
-from pipeline.core.errors import FitRefused, OutOfRange
+from deamat.actuator.stack import FIRST_LAYER_DOWN, ON_EDGE, STANDING, Orientation, Stack
+from deamat.actuator.strain import pull_in_voltage
+from deamat.core.errors import FitRefused, OutOfRange
 
 from .stacks import layer, strip
 

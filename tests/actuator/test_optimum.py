@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pipeline.actuator.figure_of_merit import multilayer, no_electrodes
-from pipeline.actuator.optimum import (
+from deamat.actuator.figure_of_merit import multilayer, no_electrodes
+from deamat.actuator.optimum import (
     best_passive_modulus,
     best_passive_thickness,
     best_split,
@@ -14,7 +14,7 @@ from pipeline.actuator.optimum import (
     thickness_ratio_at_fixed_active,
     thickness_ratio_at_fixed_total,
 )
-from pipeline.core.errors import OutOfRange
+from deamat.core.errors import OutOfRange
 
 from .stacks import random_unimorphs
 

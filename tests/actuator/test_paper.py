@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pipeline.actuator.figure_of_merit import multilayer
-from pipeline.actuator.optimum import best_passive_thickness
-from pipeline.actuator.ranges import Reals
-from pipeline.actuator.strain import drive, paper_eq4, thickness_strain
+from deamat.actuator.figure_of_merit import multilayer
+from deamat.actuator.optimum import best_passive_thickness
+from deamat.actuator.ranges import Reals
+from deamat.actuator.strain import drive, paper_eq4, thickness_strain
 
 from .paper import (
     ARAROMI_2012,

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pipeline.actuator.strain import (
+from deamat.actuator.strain import (
     PULL_IN_DRIVE,
     amplification,
     drive,
@@ -17,7 +17,7 @@ from pipeline.actuator.strain import (
     pull_in_voltage,
     thickness_strain,
 )
-from pipeline.core.errors import OutOfRange
+from deamat.core.errors import OutOfRange
 
 UP_TO_PULL_IN = np.concatenate(
     [

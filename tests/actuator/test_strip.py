@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pipeline.actuator.beam import actuate
-from pipeline.actuator.stack import Layer, Role, Stack
-from pipeline.actuator.strain import pull_in_voltage
-from pipeline.actuator.strip import (
+from deamat.actuator.beam import actuate
+from deamat.actuator.stack import Layer, Role, Stack
+from deamat.actuator.strain import pull_in_voltage
+from deamat.actuator.strip import (
     Allowed,
     Strip,
     best_passive,
@@ -24,7 +24,7 @@ from pipeline.actuator.strip import (
     pull_in_limit,
     true_field,
 )
-from pipeline.core.errors import MissingProperty, OutOfRange
+from deamat.core.errors import MissingProperty, OutOfRange
 
 STRIP = Strip(
     film_modulus_Pa=1e5,

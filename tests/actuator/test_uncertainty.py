@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 from scipy.special import ndtr
 
-from pipeline.actuator.design import respond
-from pipeline.actuator.next_test import next_tests, plan
-from pipeline.actuator.ranges import Reals
-from pipeline.actuator.strain import pull_in_voltage
-from pipeline.actuator.strip import Allowed, Floats
-from pipeline.actuator.uncertainty import Input, first_order, monte_carlo, tornado
-from pipeline.core.errors import FitRefused
-from pipeline.core.quantity import Contribution
+from deamat.actuator.design import respond
+from deamat.actuator.next_test import next_tests, plan
+from deamat.actuator.ranges import Reals
+from deamat.actuator.strain import pull_in_voltage
+from deamat.actuator.strip import Allowed, Floats
+from deamat.actuator.uncertainty import Input, first_order, monte_carlo, tornado
+from deamat.core.errors import FitRefused
+from deamat.core.quantity import Contribution
 
 from .test_strip import STRIP
 

@@ -17,11 +17,11 @@ import pytest
 
 from benchmarks.coverage import Answer, answers, by_key, table
 from benchmarks.coverage_truth import NOT_ON_CARDS, table_of, truth_of
-from pipeline.core.errors import MissingProperty
-from pipeline.core.properties import PROPERTIES
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import PropertyRecord
-from pipeline.techniques import TECHNIQUES
+from deamat.core.errors import MissingProperty
+from deamat.core.properties import PROPERTIES
+from deamat.core.quantity import Quantity
+from deamat.core.records import PropertyRecord
+from deamat.techniques import TECHNIQUES
 
 FIRST, CAMPAIGNS = 50_000, 12
 OF_LIQUIDS = ("viscosity", "handling")

@@ -8,7 +8,7 @@ import pytest
 from benchmarks.families.family import with_front
 from benchmarks.measure import Answer, Contender, front, measured_rows, statistics
 from benchmarks.timing import Row
-from pipeline.core.errors import FitRefused
+from deamat.core.errors import FitRefused
 
 
 def test_the_front_holds_who_is_not_beaten() -> None:

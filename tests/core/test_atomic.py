@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.core.atomic import whole_folder, write_atomically
+from deamat.core.atomic import whole_folder, write_atomically
 
 
 def test_writes_the_bytes_and_makes_the_folder(tmp_path: Path) -> None:

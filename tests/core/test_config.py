@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 from pydantic import Field
 
-from pipeline.core.config import load_config
-from pipeline.core.errors import ConfigError
-from pipeline.core.instruments import Declared
+from deamat.core.config import load_config
+from deamat.core.errors import ConfigError
+from deamat.core.instruments import Declared
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -47,7 +47,7 @@ def test_a_missing_folder_is_an_error_a_missing_file_declares_nothing(tmp_path: 
 
 
 def test_the_shipped_configuration_holds() -> None:
-    from pipeline.techniques import TECHNIQUES
+    from deamat.techniques import TECHNIQUES
 
     config = load_config(ROOT / "config", {t.key: t.config for t in TECHNIQUES.values()})
     assert config.name_of("sylgard-182-10to1") == "Sylgard 182 (10:1)"

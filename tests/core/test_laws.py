@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pipeline.core.errors import OutOfRange
-from pipeline.core.laws import FORMS, evaluate
-from pipeline.core.records import Law
-from pipeline.core.viscometer import SPEEDS_RPM, full_scale_Pas
+from deamat.core.errors import OutOfRange
+from deamat.core.laws import FORMS, evaluate
+from deamat.core.records import Law
+from deamat.core.viscometer import SPEEDS_RPM, full_scale_Pas
 
 POINTS = {
     "polynomial": ((2.0, -0.5, 0.3), (), None),

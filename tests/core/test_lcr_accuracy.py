@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from pipeline.core.instruments import LcrAccuracy, Machine
+from deamat.core.instruments import LcrAccuracy, Machine
 
 
 def limit(f: float, ohm: float, level: float = 1.0, fast: bool = False) -> float:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from pipeline.core.errors import RawFileError
-from pipeline.core.manifest import Difference, compare, format_manifest, parse_manifest
+from deamat.core.errors import RawFileError
+from deamat.core.manifest import Difference, compare, format_manifest, parse_manifest
 
 _A, _B = "a" * 64, "b" * 64
 

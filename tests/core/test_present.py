@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pipeline.core import present
-from pipeline.core.present import (
+from deamat.core import present
+from deamat.core.present import (
     aligned,
     readable,
     readable_conditions,
@@ -16,10 +16,10 @@ from pipeline.core.present import (
     scale_of,
     si_text,
 )
-from pipeline.core.properties import CONDITIONS, PROPERTIES
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import Condition
-from pipeline.core.units import from_si, si_factor
+from deamat.core.properties import CONDITIONS, PROPERTIES
+from deamat.core.quantity import Quantity
+from deamat.core.records import Condition
+from deamat.core.units import from_si, si_factor
 
 
 @pytest.mark.parametrize(

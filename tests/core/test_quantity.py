@@ -6,8 +6,8 @@ import math
 
 import pytest
 
-from pipeline.core.errors import OutOfRange
-from pipeline.core.quantity import Contribution, Quantity
+from deamat.core.errors import OutOfRange
+from deamat.core.quantity import Contribution, Quantity
 
 
 def test_budget_adds_in_quadrature_and_keeps_the_shared_part_apart() -> None:

@@ -6,8 +6,8 @@ import re
 
 import pytest
 
-from pipeline.core.errors import ConfigError
-from pipeline.core.units import UnknownUnit, read_quantity
+from deamat.core.errors import ConfigError
+from deamat.core.units import UnknownUnit, read_quantity
 
 
 @pytest.mark.parametrize(

@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import pytest
 
-from pipeline.core.errors import OutOfRange
-from pipeline.core.present import readable_record
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import Bound, PropertyRecord
+from deamat.core.errors import OutOfRange
+from deamat.core.present import readable_record
+from deamat.core.quantity import Quantity
+from deamat.core.records import Bound, PropertyRecord
 
 
 def _record(interval: tuple[float, float], bound: Bound) -> PropertyRecord:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from pipeline.core.errors import RawFileError
-from pipeline.core.instruments import Gauge
-from pipeline.core.register import Register, RegisterForm, read_register
+from deamat.core.errors import RawFileError
+from deamat.core.instruments import Gauge
+from deamat.core.register import Register, RegisterForm, read_register
 
 _PATH = "demo/compression/specimens.csv"
 _GOOD = "specimen,material,file,diameter_mm,u_diameter_mm,height_mm,age,cup\na,m,f/a.csv,28,0.02,12,after cure,150 ml\n"

@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from pipeline.core.errors import FitRefused
-from pipeline.core.instruments import Machine
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import Recording
-from pipeline.core.stress_strain import (
+from deamat.core.errors import FitRefused
+from deamat.core.instruments import Machine
+from deamat.core.quantity import Quantity
+from deamat.core.records import Recording
+from deamat.core.stress_strain import (
     StressStrain,
     circular_section,
     disagreement,

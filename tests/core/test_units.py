@@ -5,7 +5,7 @@ from __future__ import annotations
 import pint
 import pytest
 
-from pipeline.core.units import UNITS, UnknownUnit, from_si, si_factor, to_si
+from deamat.core.units import UNITS, UnknownUnit, from_si, si_factor, to_si
 
 _TO_PINT = {
     "%": "percent", "-": "dimensionless", "1": "dimensionless", "mm/mm": "dimensionless",

@@ -8,8 +8,8 @@ import math
 import numpy as np
 import pytest
 
-from pipeline.core.errors import FitRefused
-from pipeline.estimators.mean import coverage_factor, mean_with_shared, outliers
+from deamat.core.errors import FitRefused
+from deamat.estimators.mean import coverage_factor, mean_with_shared, outliers
 
 
 @pytest.mark.parametrize(

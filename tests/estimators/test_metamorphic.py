@@ -14,17 +14,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from pipeline.estimators.linear import fit_linear
-from pipeline.estimators.mean import mean_with_shared, outliers
-from pipeline.estimators.monotone import fit_non_decreasing
-from pipeline.estimators.nonlinear import NonlinearFit, fit_nonlinear
-from pipeline.estimators.polynomial import PolynomialFit, fit_polynomial
-from pipeline.estimators.power_law import ErrorModel, fit_power_law
-from pipeline.estimators.selection import choose
-from pipeline.estimators.slope import fit_line
-from pipeline.estimators.weibull_goodness import goodness_of_fit, low_outlier
+from deamat.core.arrays import FloatArray
+from deamat.estimators.curves.slope import fit_line
+from deamat.estimators.least_squares.linear import fit_linear
+from deamat.estimators.least_squares.monotone import fit_non_decreasing
+from deamat.estimators.least_squares.nonlinear import NonlinearFit, fit_nonlinear
+from deamat.estimators.least_squares.polynomial import PolynomialFit, fit_polynomial
+from deamat.estimators.least_squares.power_law import ErrorModel, fit_power_law
+from deamat.estimators.mean import mean_with_shared, outliers
+from deamat.estimators.selection import choose
+from deamat.estimators.weibull.goodness import goodness_of_fit, low_outlier
 
-FloatArray = NDArray[np.float64]
 UNITS = st.floats(1e-6, 1e6)
 SEEDS = st.integers(0, 2**20)
 few = settings(deadline=None, derandomize=True, max_examples=20)

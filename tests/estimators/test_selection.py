@@ -5,11 +5,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from pipeline.core.errors import FitRefused
-from pipeline.estimators.checks import ErrorScale
-from pipeline.estimators.linear import LinearFit, fit_linear
-from pipeline.estimators.polynomial import PolynomialFit, fit_polynomial
-from pipeline.estimators.selection import (
+from deamat.core.errors import FitRefused
+from deamat.estimators.least_squares.checks import ErrorScale
+from deamat.estimators.least_squares.linear import LinearFit, fit_linear
+from deamat.estimators.least_squares.polynomial import PolynomialFit, fit_polynomial
+from deamat.estimators.selection import (
     DECISIVE,
     Enough,
     aicc,

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pipeline.core.records import Summary
-from pipeline.techniques import viscosity
-from pipeline.techniques.viscosity.config import ViscosityConfig
+from deamat.core.records import Summary
+from deamat.techniques import viscosity
+from deamat.techniques.viscosity.config import ViscosityConfig
 from tests.techniques.runs import CONTEXT, HOUR, newtonian, reduce
 
 TIMES = np.arange(0.25, 13.01, 0.25) * HOUR

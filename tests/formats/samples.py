@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from pipeline.core.records import FloatArray
-from pipeline.formats.rawfile import RawFile
+from deamat.core.arrays import FloatArray
+from deamat.formats.rawfile import RawFile
 
 DATA = Path(__file__).resolve().parent.parent / "data" / "formats"
 

@@ -8,9 +8,9 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pipeline.core.errors import RawFileError
-from pipeline.formats import FORMATS
-from pipeline.formats.rawfile import RawFile
+from deamat.core.errors import RawFileError
+from deamat.formats import FORMATS
+from deamat.formats.rawfile import RawFile
 from tests.formats.samples import SAMPLES, Sample
 from tests.formats.test_good_files import read
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from pipeline.core.errors import RawFileError
-from pipeline.formats.detect import detect
-from pipeline.formats.rawfile import RawFile
+from deamat.core.errors import RawFileError
+from deamat.formats.detect import detect
+from deamat.formats.rawfile import RawFile
 from tests.formats.samples import BY_NAME, SAMPLES, Sample
 from tests.formats.test_good_files import every_sample, read, same
 

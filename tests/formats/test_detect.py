@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from pipeline import formats
-from pipeline.core.errors import ConfigError, RawFileError
-from pipeline.formats import FORMATS, detect
-from pipeline.formats.format import Format
-from pipeline.formats.rawfile import Head, RawFile
+from deamat import formats
+from deamat.core.errors import ConfigError, RawFileError
+from deamat.formats import FORMATS, detect
+from deamat.formats.format import Format
+from deamat.formats.rawfile import Head, RawFile
 from tests.formats.samples import BY_NAME, SAMPLES, Sample
 from tests.formats.test_good_files import every_sample
 
@@ -38,7 +38,7 @@ def test_every_format_has_a_sample_or_tests_of_its_own() -> None:
         if p.name != Path(__file__).name
     ]
     for form in FORMATS:
-        module = f"pipeline.formats.{form.read.__module__.rpartition('.')[2]}"
+        module = f"deamat.formats.{form.read.__module__.rpartition('.')[2]}"
         assert form.name in BY_NAME or any(
             module in text or f'"{form.name}"' in text for text in others
         )
@@ -99,7 +99,7 @@ def test_an_unknown_name_is_refused_with_the_nearest() -> None:
 
 @pytest.mark.parametrize("form", FORMATS, ids=lambda form: form.name)
 def test_every_reader_documents_itself_under_the_same_headings(form: Format) -> None:
-    module = importlib.import_module(f"pipeline.formats.{form.name}")
+    module = importlib.import_module(f"deamat.formats.{form.name}")
     assert module.FORMAT is form
     headings = re.findall(r"^(\w+)\n-+\n\S", module.__doc__ or "", re.MULTILINE)
     assert headings == ["Usage", "Format", "Uncertainties", "Metadata"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pipeline.formats.documentation import contradictions, stated_units
+from deamat.formats.documentation import contradictions, stated_units
 
 
 def test_statements_are_read_from_lists_and_lines() -> None:

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pipeline.core.errors import RawFileError
-from pipeline.core.records import Recording
-from pipeline.formats.detect import detect
-from pipeline.formats.rawfile import RawFile
+from deamat.core.errors import RawFileError
+from deamat.core.records import Recording
+from deamat.formats.detect import detect
+from deamat.formats.rawfile import RawFile
 
 ANTON_PAAR = (
     "Shear Rate;Shear Stress;Viscosity;Torque\r\n[1/s];[Pa];[Pa\u00b7s];[\u00b5Nm]\r\n"

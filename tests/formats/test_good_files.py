@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pipeline.core.records import FloatArray, Recording
-from pipeline.formats.detect import by_name, detect
-from pipeline.formats.rawfile import RawFile
+from deamat.core.arrays import FloatArray
+from deamat.core.records import Recording
+from deamat.formats.detect import by_name, detect
+from deamat.formats.rawfile import RawFile
 from tests.formats.samples import SAMPLES, Sample
 
 every_sample = pytest.mark.parametrize("sample", SAMPLES, ids=lambda sample: sample.format)

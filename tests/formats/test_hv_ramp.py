@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pipeline.core.errors import RawFileError
-from pipeline.core.records import Recording
-from pipeline.formats.detect import by_name, detect
-from pipeline.formats.rawfile import RawFile
+from deamat.core.errors import RawFileError
+from deamat.core.records import Recording
+from deamat.formats.detect import by_name, detect
+from deamat.formats.rawfile import RawFile
 
 VOLTAGE = "# channel 1: voltage monitor, 2000 V/V"
 CURRENT = "# channel 2: current monitor, 2e-3 A/V"

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pipeline.core.errors import RawFileError
-from pipeline.core.records import Recording
-from pipeline.formats.detect import detect
-from pipeline.formats.hysitron import FORMAT
-from pipeline.formats.rawfile import RawFile
+from deamat.core.errors import RawFileError
+from deamat.core.records import Recording
+from deamat.formats.detect import detect
+from deamat.formats.hysitron import FORMAT
+from deamat.formats.rawfile import RawFile
 from tests.formats.samples import BY_NAME
 from tests.formats.test_good_files import same
 

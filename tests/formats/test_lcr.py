@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pipeline.core.errors import RawFileError
-from pipeline.core.records import Recording
-from pipeline.formats.detect import by_name, detect
-from pipeline.formats.rawfile import RawFile
+from deamat.core.errors import RawFileError
+from deamat.core.records import Recording
+from deamat.formats.detect import by_name, detect
+from deamat.formats.rawfile import RawFile
 
 DATA = Path(__file__).resolve().parent.parent / "data" / "lcr"
 LOG, CSV, E4980A = ((DATA / name).read_bytes() for name in ("lcr6000.log", "lcr.csv", "e4980a.csv"))

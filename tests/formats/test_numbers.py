@@ -11,12 +11,12 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from pipeline.core.errors import RawFileError
-from pipeline.core.records import FloatArray
-from pipeline.formats.cells import Dialect, read_cells
-from pipeline.formats.numbers import parse, read_block
-from pipeline.formats.quoted import unquote
-from pipeline.formats.rawfile import RawFile
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import RawFileError
+from deamat.formats.cells import Dialect, read_cells
+from deamat.formats.numbers import parse, read_block
+from deamat.formats.quoted import unquote
+from deamat.formats.rawfile import RawFile
 
 COMMA, SEMICOLON, TAB = Dialect(","), Dialect(";"), Dialect("\t")
 DECIMAL_COMMA, QUOTED = Dialect("\t", decimal=","), Dialect(",", quoted=True)

@@ -8,11 +8,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from pipeline.core.records import Recording
-from pipeline.formats import FORMATS
-from pipeline.formats.detect import detect
-from pipeline.formats.documentation import contradictions, stated_units
-from pipeline.formats.rawfile import RawFile
+from deamat.core.records import Recording
+from deamat.formats import FORMATS
+from deamat.formats.detect import detect
+from deamat.formats.documentation import contradictions, stated_units
+from deamat.formats.rawfile import RawFile
 
 PHANTOM = {
     "time_s": 1.0,

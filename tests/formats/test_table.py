@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pipeline.core.errors import RawFileError
-from pipeline.core.records import Recording
-from pipeline.core.units import UNITS
-from pipeline.formats.quantities import STANDARD, assign, own_name
-from pipeline.formats.rawfile import RawFile
+from deamat.core.errors import RawFileError
+from deamat.core.records import Recording
+from deamat.core.units import UNITS
+from deamat.formats.quantities import STANDARD, assign, own_name
+from deamat.formats.rawfile import RawFile
 from tests.formats.samples import BY_NAME
 from tests.formats.test_good_files import read
 

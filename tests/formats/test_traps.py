@@ -15,9 +15,9 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.core.errors import RawFileError
-from pipeline.run.folders import Folders
-from pipeline.run.register import register
+from deamat.core.errors import RawFileError
+from deamat.run.folders import Folders
+from deamat.run.register import register
 from tests.formats.samples import BY_NAME
 from tests.formats.trap_files import (
     CYLINDER,

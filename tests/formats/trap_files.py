@@ -7,15 +7,15 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from pipeline.core.errors import RawFileError
-from pipeline.core.instruments import Machine
-from pipeline.core.records import MeasuredValue, PropertyRecord, Recording, Specimen
-from pipeline.core.register import read_register
-from pipeline.core.technique import Context
-from pipeline.formats.detect import detect
-from pipeline.formats.rawfile import RawFile
-from pipeline.run.work import Task, reduce_one
-from pipeline.techniques import TECHNIQUES
+from deamat.core.errors import RawFileError
+from deamat.core.instruments import Machine
+from deamat.core.records import MeasuredValue, PropertyRecord, Recording, Specimen
+from deamat.core.register import read_register
+from deamat.core.technique import Context
+from deamat.formats.detect import detect
+from deamat.formats.rawfile import RawFile
+from deamat.run.work import Task, reduce_one
+from deamat.techniques import TECHNIQUES
 
 CAMPAIGN = "c"
 HOURS = tuple(0.5 * i for i in range(1, 26))

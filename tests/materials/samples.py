@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
-from pipeline.core.ledger import FileEntry, Provenance
-from pipeline.core.properties import CONDITIONS, PROPERTIES
-from pipeline.core.quantity import Contribution, Quantity
-from pipeline.core.records import (
+from deamat.core.ledger import FileEntry, Provenance
+from deamat.core.properties import CONDITIONS, PROPERTIES
+from deamat.core.quantity import Contribution, Quantity
+from deamat.core.records import (
     Condition,
     Flag,
     Law,
@@ -21,7 +21,7 @@ from pipeline.core.records import (
     Refusal,
     Specimen,
 )
-from pipeline.materials.card import Credit, MaterialCard
+from deamat.materials.card import Credit, MaterialCard
 
 RAW = "soft-2026/compression"
 

@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 
-from pipeline.core.errors import MissingProperty
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import Flag
-from pipeline.materials.card import MaterialCard, read_card
-from pipeline.materials.document import CardError
+from deamat.core.errors import MissingProperty
+from deamat.core.quantity import Quantity
+from deamat.core.records import Flag
+from deamat.materials.card import MaterialCard, read_card
+from deamat.materials.document import CardError
 from tests.materials import samples
 from tests.materials.samples import aged, card, modulus, refusal, viscosity_law
 

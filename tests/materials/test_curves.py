@@ -9,9 +9,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from pipeline.core.records import Measurement
-from pipeline.materials.curves import CurvesError, read_curves, unit_of_column, write_curves
-from pipeline.materials.database import MissingMaterial, open_database, write_database
+from deamat.core.records import Measurement
+from deamat.materials.curves import CurvesError, read_curves, unit_of_column, write_curves
+from deamat.materials.database import MissingMaterial, open_database, write_database
 from tests.materials.samples import PROVENANCE, card, measurement
 
 A1 = measurement("A1", {"nominal_strain": [0.0, 0.1, 0.2], "nominal_stress_Pa": [0.0, 10.0, 20.5]})

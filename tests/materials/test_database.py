@@ -9,18 +9,18 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, given, settings
 
-from pipeline.core.ledger import FileEntry
-from pipeline.core.properties import PROPERTIES
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import PropertyRecord
-from pipeline.materials.card import MaterialCard
-from pipeline.materials.database import (
+from deamat.core.ledger import FileEntry
+from deamat.core.properties import PROPERTIES
+from deamat.core.quantity import Quantity
+from deamat.core.records import PropertyRecord
+from deamat.materials.card import MaterialCard
+from deamat.materials.database import (
     DatabaseError,
     MissingMaterial,
     open_database,
     write_database,
 )
-from pipeline.materials.document import CardError
+from deamat.materials.document import CardError
 from tests.materials import samples
 from tests.materials.samples import FILES, PROVENANCE, card, modulus
 

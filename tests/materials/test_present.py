@@ -5,9 +5,9 @@ from typing import Any
 
 import pytest
 
-from pipeline.core.records import Flag
-from pipeline.materials.card import MaterialCard
-from pipeline.materials.present import card_text, law_text
+from deamat.core.records import Flag
+from deamat.materials.card import MaterialCard
+from deamat.materials.present import card_text, law_text
 from tests.materials.samples import CREDIT, TWIN, card, modulus, refusal, viscosity_law
 
 

@@ -9,9 +9,9 @@ import jsonschema
 import pytest
 from hypothesis import given, settings
 
-from pipeline.core.properties import CONDITIONS, PROPERTIES
-from pipeline.materials.card import MaterialCard
-from pipeline.materials.document import SCHEMA
+from deamat.core.properties import CONDITIONS, PROPERTIES
+from deamat.materials.card import MaterialCard
+from deamat.materials.document import SCHEMA
 from tests.materials import samples
 
 _PATH = Path(__file__).parents[2] / "docs" / "card.schema.json"

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.core.errors import MissingProperty
-from pipeline.core.quantity import Contribution, Quantity
-from pipeline.materials.card import MaterialCard
-from pipeline.materials.database import Database, MissingMaterial, open_database, write_database
-from pipeline.materials.trace import percent_of_variance, trace
+from deamat.core.errors import MissingProperty
+from deamat.core.quantity import Contribution, Quantity
+from deamat.materials.card import MaterialCard
+from deamat.materials.database import Database, MissingMaterial, open_database, write_database
+from deamat.materials.trace import percent_of_variance, trace
 from tests.materials.samples import (
     CREDIT,
     FILES,

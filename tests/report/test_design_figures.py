@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.actuator.compositions import compare, pareto
-from pipeline.actuator.design import Request, design
-from pipeline.core.errors import MissingProperty
-from pipeline.report.design import (
+from deamat.actuator.compositions import compare, pareto
+from deamat.actuator.design import Request, design
+from deamat.core.errors import MissingProperty
+from deamat.report.design import (
     compositions_figure,
     curvature_figure,
     pareto_figure,

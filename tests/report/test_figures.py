@@ -20,11 +20,11 @@ from matplotlib.patches import Rectangle
 from matplotlib.text import Text
 from PIL import Image
 
-from pipeline.core.errors import ConfigError
-from pipeline.report.bars import draw_moduli, height_for
-from pipeline.report.figures import moduli_figure, technique_figure, technique_title
-from pipeline.report.moduli import ModulusBar
-from pipeline.report.style import COLOURS, figure_style, new_figure, place_legend, set_title
+from deamat.core.errors import ConfigError
+from deamat.report.bars import draw_moduli, height_for
+from deamat.report.figures import moduli_figure, technique_figure, technique_title
+from deamat.report.moduli import ModulusBar
+from deamat.report.style import COLOURS, figure_style, new_figure, place_legend, set_title
 
 LONG = "a-material-of-the-laboratory-with-an-unusually-long-name-60to1-plus-15-percent-thinner"
 
@@ -109,8 +109,8 @@ import sys
 from pathlib import Path
 import matplotlib
 matplotlib.rcParams.update({"font.size": 20, "lines.linewidth": 9, "svg.fonttype": "path"})
-from pipeline.report.figures import moduli_figure
-from pipeline.report.moduli import ModulusBar
+from deamat.report.figures import moduli_figure
+from deamat.report.moduli import ModulusBar
 rows = (("ef50-0t", 159.6, 2.2), ("ef30-25t", 49.2, 1.1), ("ef10-50t", 15.9, 0.3))
 bars = [
     ModulusBar(m, "compressive modulus", 10, 1e3 * y, (1e3 * (y - u), 1e3 * (y + u)))

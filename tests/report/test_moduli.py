@@ -6,9 +6,9 @@ from collections.abc import Mapping
 
 import pytest
 
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import Condition, PropertyRecord, Refusal
-from pipeline.report.moduli import ModulusBar, modulus_bars
+from deamat.core.quantity import Quantity
+from deamat.core.records import Condition, PropertyRecord, Refusal
+from deamat.report.moduli import ModulusBar, modulus_bars
 
 
 def record(

@@ -9,11 +9,11 @@ from typing import Any
 
 import pytest
 
-import pipeline.run.draw
-from pipeline.run import run_all
-from pipeline.run.draw import FigureJob
-from pipeline.run.folders import Folders
-from pipeline.run.register import register
+import deamat.run.draw
+from deamat.run import run_all
+from deamat.run.draw import FigureJob
+from deamat.run.folders import Folders
+from deamat.run.register import register
 
 ROOT = Path(__file__).resolve().parents[2]
 TWIN = ROOT / "raw" / "sylgard-2022-twin"
@@ -44,7 +44,7 @@ def quick_figures(monkeypatch: pytest.MonkeyPatch) -> None:
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(f"SYNTHETIC {job.title} {len(job.measurements)}")
 
-    monkeypatch.setattr(pipeline.run.draw, "draw_one", words)
+    monkeypatch.setattr(deamat.run.draw, "draw_one", words)
 
 
 def small_campaign(folder: Path) -> None:

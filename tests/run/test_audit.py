@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.core.errors import ConfigError
-from pipeline.run.audit import audit, audit_text
-from pipeline.run.folders import Folders
-from pipeline.run.register import register
+from deamat.core.errors import ConfigError
+from deamat.run.audit import audit, audit_text
+from deamat.run.folders import Folders
+from deamat.run.register import register
 from tests.run.conftest import curves, run
 
 pytestmark = pytest.mark.usefixtures("quick_figures")

@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 import pytest
 
-from pipeline.run.folders import Folders
-from pipeline.run.register import register
+from deamat.run.folders import Folders
+from deamat.run.register import register
 from tests.run.conftest import curves, run
 
 pytestmark = pytest.mark.usefixtures("quick_figures")

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.run import explain
-from pipeline.run.folders import Folders
-from pipeline.run.register import register
+from deamat.run import explain
+from deamat.run.folders import Folders
+from deamat.run.register import register
 from tests.run.conftest import all_of_one_material, curves, run
 
 pytestmark = pytest.mark.usefixtures("quick_figures")
@@ -131,7 +131,7 @@ def test_a_changed_name_redoes_the_card_and_its_figures(folders: Folders) -> Non
 def test_a_changed_stage_version(folders: Folders, monkeypatch: pytest.MonkeyPatch) -> None:
     import dataclasses
 
-    from pipeline.techniques import TECHNIQUES
+    from deamat.techniques import TECHNIQUES
 
     run(folders)
     raised = dataclasses.replace(TECHNIQUES["compression"], version=1000)

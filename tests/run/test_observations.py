@@ -6,10 +6,10 @@ import hashlib
 from collections.abc import Mapping
 from pathlib import Path
 
-from pipeline.core.config import load_config
-from pipeline.run.survey import Survey, survey
-from pipeline.techniques import TECHNIQUES
-from pipeline.twin.handling import handling_part
+from deamat.core.config import load_config
+from deamat.run.survey import Survey, survey
+from deamat.techniques import TECHNIQUES
+from deamat.twin.handling import handling_part
 
 ROOT = Path(__file__).resolve().parents[2]
 CAMPAIGN = b'title = "t"\nlaboratory = "l"\nlicence = "CC0"\nsource = "s"\nsynthetic = true\n'

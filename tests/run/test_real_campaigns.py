@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 
-from pipeline import open_database
-from pipeline.run.folders import Folders
+from deamat import open_database
+from deamat.run.folders import Folders
 from tests.run.conftest import ROOT, run
 
 

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-import pipeline.run.publish
-from pipeline import open_database
-from pipeline.core.errors import ConfigError
-from pipeline.run.folders import Folders
-from pipeline.run.register import register
-from pipeline.run.state import State
+import deamat.run.publish
+from deamat import open_database
+from deamat.core.errors import ConfigError
+from deamat.run.folders import Folders
+from deamat.run.register import register
+from deamat.run.state import State
 from tests.run.conftest import curves, run
 
 
@@ -57,7 +57,7 @@ def test_a_run_that_dies_leaves_the_last_release_readable(
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
-        patch.setattr(pipeline.run.publish, "draw_all", die)
+        patch.setattr(deamat.run.publish, "draw_all", die)
         with pytest.raises(KeyboardInterrupt):
             run(folders)
     assert _bytes(folders.processed) == before

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from pipeline import open_database
-from pipeline.core.properties import REFERENCE_AGE
-from pipeline.run.folders import Folders
-from pipeline.twin.truth import AGED, materials, true_value
+from deamat import open_database
+from deamat.core.properties import REFERENCE_AGE
+from deamat.run.folders import Folders
+from deamat.twin.truth import AGED, materials, true_value
 from tests.run.conftest import ROOT, run
 
 pytestmark = pytest.mark.usefixtures("quick_figures")

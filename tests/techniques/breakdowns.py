@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.core.instruments import Machine
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import Measurement, PropertyRecord, Recording, Specimen, Summary
-from pipeline.core.technique import Context
-from pipeline.techniques.breakdown import TECHNIQUE, BreakdownConfig
+from deamat.core.instruments import Machine
+from deamat.core.quantity import Quantity
+from deamat.core.records import Measurement, PropertyRecord, Recording, Specimen, Summary
+from deamat.core.technique import Context
+from deamat.techniques.breakdown import TECHNIQUE, BreakdownConfig
 from tests.techniques.curves import recording
 
 STRENGTH, SHAPE, UNBIASED, B10, B1 = TECHNIQUE.yields

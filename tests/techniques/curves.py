@@ -7,14 +7,13 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pipeline.core.instruments import Machine
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import Condition, Measurement, Recording, Source, Specimen
-from pipeline.core.technique import Context, Technique
+from deamat.core.arrays import FloatArray
+from deamat.core.instruments import Machine
+from deamat.core.quantity import Quantity
+from deamat.core.records import Condition, Measurement, Recording, Source, Specimen
+from deamat.core.technique import Context, Technique
 
-FloatArray = NDArray[np.float64]
 EXACT = Machine(u_force_calibration=0.0, u_displacement_calibration=0.0)
 
 

@@ -8,20 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.core.instruments import Machine
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import (
-    Flag,
-    FloatArray,
-    Measurement,
-    Recording,
-    Source,
-    Specimen,
-)
-from pipeline.core.technique import Context
-from pipeline.estimators.impedance import PAIRS, ComplexArray, shown
-from pipeline.techniques.permittivity import TECHNIQUE
-from pipeline.techniques.permittivity.config import PermittivityConfig
+from deamat.core.arrays import FloatArray
+from deamat.core.instruments import Machine
+from deamat.core.quantity import Quantity
+from deamat.core.records import Flag, Measurement, Recording, Source, Specimen
+from deamat.core.technique import Context
+from deamat.estimators.dielectric.impedance import PAIRS, ComplexArray, shown
+from deamat.techniques.permittivity import TECHNIQUE
+from deamat.techniques.permittivity.config import PermittivityConfig
 
 EPS0 = 8.8541878188e-12
 FREQUENCY = np.logspace(1, 4, 31)

@@ -7,12 +7,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from pipeline.core.instruments import Machine
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import FloatArray, Measurement, Recording, Specimen
-from pipeline.core.technique import Context
-from pipeline.techniques.nanoindentation import MODULUS, TECHNIQUE
-from pipeline.twin.nanoindentation import simulate_nanoindentation, tip_of
+from deamat.core.arrays import FloatArray
+from deamat.core.instruments import Machine
+from deamat.core.quantity import Quantity
+from deamat.core.records import Measurement, Recording, Specimen
+from deamat.core.technique import Context
+from deamat.techniques.nanoindentation import MODULUS, TECHNIQUE
+from deamat.twin.nanoindentation import simulate_nanoindentation, tip_of
 from tests.techniques.curves import EXACT, lengths, source
 
 TRAVEL_M = 5e-6

@@ -6,12 +6,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from pipeline.core.instruments import Machine
-from pipeline.core.records import FloatArray, Measurement, Recording, Source, Specimen
-from pipeline.core.technique import Context
-from pipeline.core.viscometer import full_scale_Pas
-from pipeline.techniques import viscosity
-from pipeline.techniques.viscosity.config import ViscosityConfig
+from deamat.core.arrays import FloatArray
+from deamat.core.instruments import Machine
+from deamat.core.records import Measurement, Recording, Source, Specimen
+from deamat.core.technique import Context
+from deamat.core.viscometer import full_scale_Pas
+from deamat.techniques import viscosity
+from deamat.techniques.viscosity.config import ViscosityConfig
 
 HOUR = 3600.0
 MACHINE = Machine(u_torque_calibration=0.0025, torque_noise=0.003)

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import Recording, Specimen
+from deamat.core.quantity import Quantity
+from deamat.core.records import Recording, Specimen
 from tests.techniques.breakdowns import (
     MICROMETER,
     film,

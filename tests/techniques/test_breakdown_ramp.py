@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
-from pipeline.core.errors import FitRefused
-from pipeline.techniques.breakdown import BreakdownConfig
-from pipeline.techniques.breakdown.ramp import Breakdown, audit_rise, find_breakdown
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
+from deamat.techniques.breakdown import BreakdownConfig
+from deamat.techniques.breakdown.ramp import Breakdown, audit_rise, find_breakdown
 
-FloatArray = NDArray[np.float64]
 CRITERIA = BreakdownConfig().criteria()
 QUIET = 1e-6
 

@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from pipeline.core.instruments import Machine
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import PropertyRecord
-from pipeline.core.register import read_register
-from pipeline.estimators.weibull_area import scale_to_area
-from pipeline.estimators.weibull_intervals import Interval
-from pipeline.techniques.breakdown import TECHNIQUE, BreakdownConfig
-from pipeline.techniques.breakdown.summary import widened
+from deamat.core.instruments import Machine
+from deamat.core.quantity import Quantity
+from deamat.core.records import PropertyRecord
+from deamat.core.register import read_register
+from deamat.estimators.weibull.area import scale_to_area
+from deamat.estimators.weibull.intervals import Interval
+from deamat.techniques.breakdown import TECHNIQUE, BreakdownConfig
+from deamat.techniques.breakdown.summary import widened
 from tests.techniques.breakdowns import (
     B1,
     B10,

@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from pipeline.core.instruments import Machine
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import Measurement
-from pipeline.techniques.compression import TECHNIQUE, CompressionConfig
+from deamat.core.arrays import FloatArray
+from deamat.core.instruments import Machine
+from deamat.core.quantity import Quantity
+from deamat.core.records import Measurement
+from deamat.techniques.compression import TECHNIQUE, CompressionConfig
 from tests.techniques.curves import (
     CYLINDER,
     EXACT,
-    FloatArray,
     context,
     expected,
     lengths,

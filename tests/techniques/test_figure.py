@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pipeline.core.records import Summary
-from pipeline.techniques import compression, tension, viscosity
-from pipeline.techniques.viscosity.figure import draw
+from deamat.core.records import Summary
+from deamat.techniques import compression, tension, viscosity
+from deamat.techniques.viscosity.figure import draw
 from tests.techniques import runs
 from tests.techniques.curves import CYLINDER, STRIP, reduce
 

@@ -9,13 +9,13 @@ from typing import Any
 
 import pytest
 
-from pipeline.core.instruments import Machine
-from pipeline.core.records import Measurement, PropertyRecord, Recording, Summary
-from pipeline.core.register import read_register
-from pipeline.core.technique import Context
-from pipeline.techniques.handling import KEY, TECHNIQUE
-from pipeline.twin.campaign import SEED
-from pipeline.twin.handling import ROOM_C, handling_part, true_handling_times
+from deamat.core.instruments import Machine
+from deamat.core.records import Measurement, PropertyRecord, Recording, Summary
+from deamat.core.register import read_register
+from deamat.core.technique import Context
+from deamat.techniques.handling import KEY, TECHNIQUE
+from deamat.twin.campaign import SEED
+from deamat.twin.handling import ROOM_C, handling_part, true_handling_times
 
 HEADER = "material,batch,bed_temperature_C,time_h,line,defect,limit\n"
 NO_FILE: Recording | None = None

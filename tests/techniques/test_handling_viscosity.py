@@ -9,16 +9,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pipeline.core.instruments import Machine
-from pipeline.core.records import Law, PropertyRecord, Refusal, Summary
-from pipeline.core.technique import Context
-from pipeline.run.measure import in_order
-from pipeline.techniques import TECHNIQUES
-from pipeline.techniques._handling_viscosity import CAVEAT, KEY
-from pipeline.techniques.handling import TECHNIQUE, HandlingConfig
-from pipeline.twin.campaign import SEED
-from pipeline.twin.handling import simulate_handling, true_handling_times
-from pipeline.twin.truth import true_viscosities
+from deamat.core.instruments import Machine
+from deamat.core.records import Law, PropertyRecord, Refusal, Summary
+from deamat.core.technique import Context
+from deamat.run.measure import in_order
+from deamat.techniques import TECHNIQUES
+from deamat.techniques._handling_viscosity import CAVEAT, KEY
+from deamat.techniques.handling import TECHNIQUE, HandlingConfig
+from deamat.twin.campaign import SEED
+from deamat.twin.handling import simulate_handling, true_handling_times
+from deamat.twin.truth import true_viscosities
 from tests.techniques.test_handling import measured, run
 
 HOUR = 3600.0

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from pipeline.core.properties import property_key
-from pipeline.techniques import TECHNIQUES
+from deamat.core.properties import property_key
+from deamat.techniques import TECHNIQUES
 
 
 def test_every_room_is_listed_under_its_own_key_and_yields_known_properties() -> None:

@@ -8,9 +8,9 @@ from collections.abc import Mapping
 
 import pytest
 
-from pipeline.core.errors import FitRefused
-from pipeline.core.quantity import Contribution, Quantity
-from pipeline.core.records import (
+from deamat.core.errors import FitRefused
+from deamat.core.quantity import Contribution, Quantity
+from deamat.core.records import (
     Condition,
     Flag,
     MeasuredValue,
@@ -20,7 +20,7 @@ from pipeline.core.records import (
     Specimen,
     Summary,
 )
-from pipeline.techniques._mean_record import summarise_by_mean
+from deamat.techniques._mean_record import summarise_by_mean
 from tests.techniques.curves import CYLINDER, source, specimen
 
 KEY = "compressive_modulus"

@@ -10,18 +10,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pipeline.core.config import load_config
-from pipeline.core.instruments import Machine
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import FloatArray, Measurement, Summary
-from pipeline.core.register import read_register
-from pipeline.core.technique import Context
-from pipeline.formats.detect import detect
-from pipeline.formats.hysitron import FORMAT
-from pipeline.formats.rawfile import RawFile
-from pipeline.techniques import TECHNIQUES
-from pipeline.techniques.nanoindentation import TECHNIQUE
-from pipeline.twin.nanoindentation import (
+from deamat.core.arrays import FloatArray
+from deamat.core.config import load_config
+from deamat.core.instruments import Machine
+from deamat.core.quantity import Quantity
+from deamat.core.records import Measurement, Summary
+from deamat.core.register import read_register
+from deamat.core.technique import Context
+from deamat.formats.detect import detect
+from deamat.formats.hysitron import FORMAT
+from deamat.formats.rawfile import RawFile
+from deamat.techniques import TECHNIQUES
+from deamat.techniques.nanoindentation import TECHNIQUE
+from deamat.twin.nanoindentation import (
     SPECIMENS,
     TOO_SOFT,
     nanoindentation_part,

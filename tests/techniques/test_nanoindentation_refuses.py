@@ -7,10 +7,10 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from pipeline.core.instruments import Machine
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import Recording
-from pipeline.techniques.nanoindentation import TECHNIQUE
+from deamat.core.instruments import Machine
+from deamat.core.quantity import Quantity
+from deamat.core.records import Recording
+from deamat.techniques.nanoindentation import TECHNIQUE
 from tests.techniques.curves import lengths
 from tests.techniques.indents import (
     BERKOVICH,

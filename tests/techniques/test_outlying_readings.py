@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pipeline.techniques.compression import TECHNIQUE
+from deamat.techniques.compression import TECHNIQUE
 from tests.techniques.curves import CYLINDER, reduce
 
 

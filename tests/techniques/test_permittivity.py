@@ -11,19 +11,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pipeline.core.config import validate
-from pipeline.core.errors import ConfigError
-from pipeline.core.instruments import LcrAccuracy, Machine
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import (
+from deamat.core.config import validate
+from deamat.core.errors import ConfigError
+from deamat.core.instruments import LcrAccuracy, Machine
+from deamat.core.quantity import Quantity
+from deamat.core.records import (
     Measurement,
     PropertyRecord,
     Summary,
 )
-from pipeline.estimators.impedance import PAIRS
-from pipeline.estimators.squeeze import squeezed_stretch
-from pipeline.techniques.permittivity import TECHNIQUE
-from pipeline.techniques.permittivity.config import PermittivityConfig
+from deamat.estimators.dielectric.impedance import PAIRS
+from deamat.estimators.dielectric.squeeze import squeezed_stretch
+from deamat.techniques.permittivity import TECHNIQUE
+from deamat.techniques.permittivity.config import PermittivityConfig
 from tests.techniques.films import (
     EPS0,
     FREQUENCY,

@@ -7,28 +7,28 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pipeline.core.config import load_config
-from pipeline.core.instruments import Machine
-from pipeline.core.properties import REFERENCE_AGE
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import PropertyRecord, Recording, Source, Specimen
-from pipeline.core.register import read_register
-from pipeline.core.technique import Context, Technique
-from pipeline.estimators.impedance import loss_tangent
-from pipeline.formats.detect import detect
-from pipeline.formats.rawfile import RawFile
-from pipeline.techniques import TECHNIQUES
-from pipeline.techniques.permittivity.config import PermittivityConfig
-from pipeline.twin.campaign import SEED
-from pipeline.twin.compression import compression_part
-from pipeline.twin.permittivity import (
+from deamat.core.config import load_config
+from deamat.core.instruments import Machine
+from deamat.core.properties import REFERENCE_AGE
+from deamat.core.quantity import Quantity
+from deamat.core.records import PropertyRecord, Recording, Source, Specimen
+from deamat.core.register import read_register
+from deamat.core.technique import Context, Technique
+from deamat.estimators.dielectric.impedance import loss_tangent
+from deamat.formats.detect import detect
+from deamat.formats.rawfile import RawFile
+from deamat.techniques import TECHNIQUES
+from deamat.techniques.permittivity.config import PermittivityConfig
+from deamat.twin.campaign import SEED
+from deamat.twin.compression import compression_part
+from deamat.twin.permittivity import (
     METER,
     U_FORCE,
     SimulatedSweep,
     permittivity_part,
     simulate_permittivity,
 )
-from pipeline.twin.truth import materials, true_value
+from deamat.twin.truth import materials, true_value
 
 CONFIG = load_config(
     Path(__file__).resolve().parents[2] / "config", {k: t.config for k, t in TECHNIQUES.items()}

@@ -8,13 +8,10 @@ import re
 import numpy as np
 import pytest
 
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import (
-    Flag,
-    FloatArray,
-    Recording,
-)
-from pipeline.estimators.impedance import ComplexArray
+from deamat.core.arrays import FloatArray
+from deamat.core.quantity import Quantity
+from deamat.core.records import Flag, Recording
+from deamat.estimators.dielectric.impedance import ComplexArray
 from tests.techniques.films import (
     FREQUENCY,
     MODULUS,

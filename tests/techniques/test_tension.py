@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
-from pipeline.core.instruments import Machine
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import MeasuredValue, Measurement
-from pipeline.techniques.tension import TECHNIQUE
+from deamat.core.arrays import FloatArray
+from deamat.core.instruments import Machine
+from deamat.core.quantity import Quantity
+from deamat.core.records import MeasuredValue, Measurement
+from deamat.techniques.tension import TECHNIQUE
 from tests.techniques.curves import (
     EXACT,
     STRIP,
@@ -23,7 +23,6 @@ from tests.techniques.curves import (
     specimen,
 )
 
-FloatArray = NDArray[np.float64]
 STRAIN = np.arange(0.0, 2.0, 5e-4)
 STRESS = 5e5 * STRAIN
 AREA, GAUGE = 18e-6, 33e-3

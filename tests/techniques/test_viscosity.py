@@ -8,16 +8,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pipeline.core.errors import OutOfRange
-from pipeline.core.instruments import Machine
-from pipeline.core.records import FloatArray, Law, Measurement, Specimen
-from pipeline.core.register import read_register
-from pipeline.core.technique import Context
-from pipeline.formats.detect import detect
-from pipeline.formats.rawfile import RawFile
-from pipeline.techniques import viscosity
-from pipeline.techniques.viscosity.config import ViscosityConfig
-from pipeline.techniques.viscosity.time_law import drift_of
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import OutOfRange
+from deamat.core.instruments import Machine
+from deamat.core.records import Law, Measurement, Specimen
+from deamat.core.register import read_register
+from deamat.core.technique import Context
+from deamat.formats.detect import detect
+from deamat.formats.rawfile import RawFile
+from deamat.techniques import viscosity
+from deamat.techniques.viscosity.config import ViscosityConfig
+from deamat.techniques.viscosity.time_law import drift_of
 from tests.techniques.runs import CONTEXT, HOUR, MACHINE, newtonian, recording, reduce, specimen
 
 TIMES = np.arange(0.25, 13.01, 0.25) * HOUR

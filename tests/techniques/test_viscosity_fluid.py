@@ -9,14 +9,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pipeline.core.errors import FitRefused, OutOfRange
-from pipeline.core.records import FloatArray, Measurement
-from pipeline.core.viscometer import full_scale_Pas
-from pipeline.formats.detect import detect
-from pipeline.formats.rawfile import RawFile
-from pipeline.techniques import viscosity
-from pipeline.techniques.viscosity.config import RateFactor, ViscosityConfig
-from pipeline.techniques.viscosity.flow_curve import NEWTONIAN, POWER_LAW, fit_flow_curve
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused, OutOfRange
+from deamat.core.records import Measurement
+from deamat.core.viscometer import full_scale_Pas
+from deamat.formats.detect import detect
+from deamat.formats.rawfile import RawFile
+from deamat.techniques import viscosity
+from deamat.techniques.viscosity.config import RateFactor, ViscosityConfig
+from deamat.techniques.viscosity.flow_curve import NEWTONIAN, POWER_LAW, fit_flow_curve
 from tests.techniques.runs import CONTEXT, HOUR, recording, reduce, specimen
 
 SPEEDS = np.array([0.3, 0.6, 1.5])

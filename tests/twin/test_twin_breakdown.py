@@ -11,9 +11,9 @@ from functools import cache, reduce
 import numpy as np
 import pytest
 
-from pipeline.core.errors import ConfigError, MissingProperty, RawFileError
-from pipeline.core.instruments import Machine
-from pipeline.core.records import (
+from deamat.core.errors import ConfigError, MissingProperty, RawFileError
+from deamat.core.instruments import Machine
+from deamat.core.records import (
     MeasuredValue,
     Measurement,
     PropertyRecord,
@@ -21,12 +21,12 @@ from pipeline.core.records import (
     Source,
     Specimen,
 )
-from pipeline.core.register import read_register
-from pipeline.core.technique import Context
-from pipeline.formats.detect import detect
-from pipeline.formats.rawfile import RawFile
-from pipeline.techniques.breakdown import TECHNIQUE
-from pipeline.twin.breakdown import (
+from deamat.core.register import read_register
+from deamat.core.technique import Context
+from deamat.formats.detect import detect
+from deamat.formats.rawfile import RawFile
+from deamat.techniques.breakdown import TECHNIQUE
+from deamat.twin.breakdown import (
     MATERIALS,
     SPECIMENS,
     breakdown_part,
@@ -35,10 +35,10 @@ from pipeline.twin.breakdown import (
     simulate_breakdown,
     true_shape,
 )
-from pipeline.twin.draws import MACHINE, MICROMETER
-from pipeline.twin.part import SYNTHETIC
-from pipeline.twin.quirks import Quirk, as_utf16, cut_short
-from pipeline.twin.ramp_quirks import (
+from deamat.twin.draws import MACHINE, MICROMETER
+from deamat.twin.part import SYNTHETIC
+from deamat.twin.quirks import Quirk, as_utf16, cut_short
+from deamat.twin.ramp_quirks import (
     ended_early,
     in_volts,
     mislabelled,
@@ -47,7 +47,7 @@ from pipeline.twin.ramp_quirks import (
     without_current,
     without_spike,
 )
-from pipeline.twin.truth import true_value
+from deamat.twin.truth import true_value
 
 DAQ = "breakdown/sylgard-182-10to1/synthetic-1.csv"
 PLAIN = "breakdown/sylgard-182-30to1/synthetic-2.csv"

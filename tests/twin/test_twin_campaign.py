@@ -15,14 +15,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pipeline.core.errors import ConfigError
-from pipeline.twin import campaign
-from pipeline.twin.campaign import NAME, PARTS, SEED, campaign_files, simulate, write_campaign
-from pipeline.twin.compression import simulate_compression
-from pipeline.twin.quirks import as_utf16, cut_short, open_ended
-from pipeline.twin.tension import simulate_tension
-from pipeline.twin.truth import AGED, materials, truth_table
-from pipeline.twin.writers import bluehill_csv, chatillon_log
+from deamat.core.errors import ConfigError
+from deamat.twin import campaign
+from deamat.twin.campaign import NAME, PARTS, SEED, campaign_files, simulate, write_campaign
+from deamat.twin.compression import simulate_compression
+from deamat.twin.quirks import as_utf16, cut_short, open_ended
+from deamat.twin.tension import simulate_tension
+from deamat.twin.truth import AGED, materials, truth_table
+from deamat.twin.writers import bluehill_csv, chatillon_log
 
 COMMITTED = Path(__file__).resolve().parents[2] / "raw" / NAME
 LOG = "compression/sylgard-182-40to1/synthetic-2-months-3.txt"

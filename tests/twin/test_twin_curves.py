@@ -12,9 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from pipeline.core.errors import OutOfRange
-from pipeline.core.records import FloatArray
-from pipeline.twin.curves import (
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import OutOfRange
+from deamat.twin.curves import (
     COMPRESSION_WINDOW,
     LINEAR_TO,
     TENSION_WINDOW,
@@ -22,7 +22,7 @@ from pipeline.twin.curves import (
     tensile_stress,
     window_slope,
 )
-from pipeline.twin.truth import materials, true_value
+from deamat.twin.truth import materials, true_value
 
 
 def _at(curve: Callable[..., FloatArray], strain: float, *parameters: float) -> float:

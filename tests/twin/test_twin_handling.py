@@ -8,15 +8,15 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.core.errors import RawFileError
-from pipeline.core.instruments import Machine
-from pipeline.core.records import Summary
-from pipeline.core.register import read_register
-from pipeline.core.technique import Context
-from pipeline.techniques.handling import TECHNIQUE
-from pipeline.twin.campaign import SEED, campaign_files
-from pipeline.twin.handling import handling_part, simulate_handling, true_handling_times
-from pipeline.twin.quirks import Quirk, typed_otherwise
+from deamat.core.errors import RawFileError
+from deamat.core.instruments import Machine
+from deamat.core.records import Summary
+from deamat.core.register import read_register
+from deamat.core.technique import Context
+from deamat.techniques.handling import TECHNIQUE
+from deamat.twin.campaign import SEED, campaign_files
+from deamat.twin.handling import handling_part, simulate_handling, true_handling_times
+from deamat.twin.quirks import Quirk, typed_otherwise
 
 FILE = "handling/observations.csv"
 CONTEXT = Context(TECHNIQUE.config(), Machine(), {})
@@ -25,7 +25,7 @@ CONTEXT = Context(TECHNIQUE.config(), Machine(), {})
 @pytest.mark.shared
 def test_the_truth_is_table_3_as_printed(shared: Path) -> None:
     facts = tomllib.loads((shared / "paper" / "facts.toml").read_text("utf-8"))
-    truth = tomllib.loads((files("pipeline.twin") / "truth.toml").read_text("utf-8"))
+    truth = tomllib.loads((files("deamat.twin") / "truth.toml").read_text("utf-8"))
     assert truth["table3"] == facts["table3"]
 
 

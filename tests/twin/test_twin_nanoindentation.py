@@ -9,14 +9,14 @@ import re
 import numpy as np
 import pytest
 
-from pipeline.core.errors import MissingProperty, RawFileError
-from pipeline.core.instruments import Gauge
-from pipeline.core.register import read_register
-from pipeline.formats.detect import detect
-from pipeline.formats.rawfile import RawFile
-from pipeline.twin.campaign import SEED, campaign_files
-from pipeline.twin.draws import draw_calibration
-from pipeline.twin.nanoindentation import (
+from deamat.core.errors import MissingProperty, RawFileError
+from deamat.core.instruments import Gauge
+from deamat.core.register import read_register
+from deamat.formats.detect import detect
+from deamat.formats.rawfile import RawFile
+from deamat.twin.campaign import SEED, campaign_files
+from deamat.twin.draws import draw_calibration
+from deamat.twin.nanoindentation import (
     MODULUS,
     SPECIMENS,
     TECHNIQUE,
@@ -27,8 +27,8 @@ from pipeline.twin.nanoindentation import (
     tip_of,
     true_modulus,
 )
-from pipeline.twin.quirks import Quirk, as_utf16, cut_short, open_ended, rows_lost
-from pipeline.twin.truth import document, materials, true_value
+from deamat.twin.quirks import Quirk, as_utf16, cut_short, open_ended, rows_lost
+from deamat.twin.truth import document, materials, true_value
 
 FILE = "nanoindentation/sylgard-182-20to1/synthetic-2.txt"
 

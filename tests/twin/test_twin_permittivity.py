@@ -10,13 +10,13 @@ import statistics
 import numpy as np
 import pytest
 
-from pipeline.core.errors import ConfigError, MissingProperty, RawFileError
-from pipeline.core.records import Recording
-from pipeline.estimators.impedance import loss_tangent
-from pipeline.formats.detect import detect
-from pipeline.formats.rawfile import RawFile
-from pipeline.twin.campaign import SEED, campaign_files
-from pipeline.twin.lcr_quirks import (
+from deamat.core.errors import ConfigError, MissingProperty, RawFileError
+from deamat.core.records import Recording
+from deamat.estimators.dielectric.impedance import loss_tangent
+from deamat.formats.detect import detect
+from deamat.formats.rawfile import RawFile
+from deamat.twin.campaign import SEED, campaign_files
+from deamat.twin.lcr_quirks import (
     GREEK_MU,
     MICRO_SIGN,
     in_microfarad,
@@ -26,7 +26,7 @@ from pipeline.twin.lcr_quirks import (
     with_units_row,
     without_function,
 )
-from pipeline.twin.permittivity import (
+from deamat.twin.permittivity import (
     FUNCTIONS,
     METER,
     TABLE,
@@ -36,8 +36,8 @@ from pipeline.twin.permittivity import (
     simulate_permittivity,
     sweep_log,
 )
-from pipeline.twin.quirks import Quirk, as_utf16, cut_short
-from pipeline.twin.truth import materials, true_value
+from deamat.twin.quirks import Quirk, as_utf16, cut_short
+from deamat.twin.truth import materials, true_value
 
 LOG = "permittivity/sylgard-184-10to1/synthetic-2.log"
 CSV = f"permittivity/{TABLE}/synthetic-1.csv"
@@ -169,7 +169,7 @@ def test_a_sweep_reads_back_to_six_digits_whatever_the_function(function: str) -
     sweep = simulate_permittivity(SEED, "sylgard-184-10to1", 2)
     file = RawFile("x.log", sweep_log(sweep, function))
     columns = list(detect(file).read(file).columns.values())
-    from pipeline.estimators.impedance import complex_capacitance
+    from deamat.estimators.dielectric.impedance import complex_capacitance
 
     seen = complex_capacitance(function, columns[0], columns[1], columns[2])
     assert seen.real == pytest.approx(sweep.capacitance_F.real, rel=2e-5)
@@ -186,7 +186,7 @@ def test_campaigns_and_films_differ_and_seeds_repeat() -> None:
 
 def test_the_other_techniques_keep_their_bytes() -> None:
     """Streams have their own keys: the gauges' errors are the campaign's, for every technique."""
-    from pipeline.twin.draws import draw_calibration
+    from deamat.twin.draws import draw_calibration
 
     tension, lcr = draw_calibration(SEED, "tension"), draw_lcr_calibration(SEED)
     assert (tension.caliper_m, tension.micrometer_m) == (lcr.caliper_m, lcr.micrometer_m)

@@ -9,14 +9,14 @@ from collections.abc import Iterable
 import numpy as np
 import pytest
 
-from pipeline.core.errors import ConfigError, MissingProperty
-from pipeline.core.instruments import Gauge, Machine
-from pipeline.twin import compression
-from pipeline.twin.compression import simulate_compression
-from pipeline.twin.draws import CALIPER, MACHINE, cell_noise, stream
-from pipeline.twin.part import SimulatedTest
-from pipeline.twin.tension import simulate_tension
-from pipeline.twin.truth import AGED, materials, true_value
+from deamat.core.errors import ConfigError, MissingProperty
+from deamat.core.instruments import Gauge, Machine
+from deamat.twin import compression
+from deamat.twin.compression import simulate_compression
+from deamat.twin.draws import CALIPER, MACHINE, cell_noise, stream
+from deamat.twin.part import SimulatedTest
+from deamat.twin.tension import simulate_tension
+from deamat.twin.truth import AGED, materials, true_value
 
 
 def _slope(test: SimulatedTest, length: str, area_m2: float, window: float) -> float:

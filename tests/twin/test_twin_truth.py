@@ -9,15 +9,15 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.core.errors import MissingProperty
-from pipeline.core.properties import PROPERTIES
-from pipeline.twin.truth import AGED, materials, true_value, truth_table
+from deamat.core.errors import MissingProperty
+from deamat.core.properties import PROPERTIES
+from deamat.twin.truth import AGED, materials, true_value, truth_table
 
 
 @pytest.mark.shared
 def test_the_truth_is_table_4_as_printed(shared: Path) -> None:
     facts = tomllib.loads((shared / "paper" / "facts.toml").read_text("utf-8"))
-    truth = tomllib.loads((files("pipeline.twin") / "truth.toml").read_text("utf-8"))
+    truth = tomllib.loads((files("deamat.twin") / "truth.toml").read_text("utf-8"))
     assert truth["materials"] == facts["table4"]
 
 

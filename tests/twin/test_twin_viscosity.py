@@ -11,20 +11,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pipeline.core.config import load_config
-from pipeline.core.errors import MissingProperty
-from pipeline.core.records import Law, Measurement, Recording, Specimen, Summary
-from pipeline.core.register import read_register
-from pipeline.core.technique import Context
-from pipeline.core.viscometer import full_scale_Pas
-from pipeline.formats.detect import detect
-from pipeline.formats.rawfile import RawFile
-from pipeline.techniques import TECHNIQUES, viscosity
-from pipeline.techniques.viscosity.config import ViscosityConfig
-from pipeline.twin.campaign import SEED
-from pipeline.twin.quirks import Quirk
-from pipeline.twin.truth import true_viscosities
-from pipeline.twin.viscometer_quirks import (
+from deamat.core.config import load_config
+from deamat.core.errors import MissingProperty
+from deamat.core.records import Law, Measurement, Recording, Specimen, Summary
+from deamat.core.register import read_register
+from deamat.core.technique import Context
+from deamat.core.viscometer import full_scale_Pas
+from deamat.formats.detect import detect
+from deamat.formats.rawfile import RawFile
+from deamat.techniques import TECHNIQUES, viscosity
+from deamat.techniques.viscosity.config import ViscosityConfig
+from deamat.twin.campaign import SEED
+from deamat.twin.quirks import Quirk
+from deamat.twin.truth import true_viscosities
+from deamat.twin.viscometer_quirks import (
     below_zero,
     contradicting,
     over_range,
@@ -32,7 +32,7 @@ from pipeline.twin.viscometer_quirks import (
     without_dates,
     wrong_unit,
 )
-from pipeline.twin.viscosity import (
+from deamat.twin.viscosity import (
     BATCHES,
     ON_STRONGER_SPRING,
     RATE_PER_RPM_PER_S,

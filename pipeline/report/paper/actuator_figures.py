@@ -8,17 +8,17 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.axes import Axes
 
-from pipeline.actuator.figure_of_merit import multilayer, no_electrodes, single_layer
-from pipeline.actuator.optimum import (
+from deamat.actuator.figure_of_merit import multilayer, no_electrodes, single_layer
+from deamat.actuator.optimum import (
     best_passive_thickness,
     thickness_ratio_at_fixed_active,
     thickness_ratio_at_fixed_total,
 )
-from pipeline.actuator.strain import PULL_IN_STRAIN
-from pipeline.core.units import from_si
-from pipeline.report.paper import printed
-from pipeline.report.paper.actuators import PASSIVE, own
-from pipeline.report.paper.claims import (
+from deamat.actuator.strain import PULL_IN_STRAIN
+from deamat.core.units import from_si
+from deamat.report.paper import printed
+from deamat.report.paper.actuators import PASSIVE, own
+from deamat.report.paper.claims import (
     MIXES,
     at_fixed_film,
     at_fixed_total,
@@ -28,7 +28,7 @@ from pipeline.report.paper.claims import (
     mixed,
     strip,
 )
-from pipeline.report.style import COLOURS
+from deamat.report.style import COLOURS
 
 Draw = Callable[[Axes], None]
 

@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pipeline.actuator.figure_of_merit import Unimorph, multilayer
-from pipeline.actuator.optimum import best_passive_thickness
-from pipeline.actuator.ranges import Reals
-from pipeline.actuator.strain import drive, paper_eq4, thickness_strain
-from pipeline.core.units import from_si, to_si
-from pipeline.report.paper import printed
-from pipeline.report.paper.entry import CORRECTED, Entry, entry
+from deamat.actuator.figure_of_merit import Unimorph, multilayer
+from deamat.actuator.optimum import best_passive_thickness
+from deamat.actuator.ranges import Reals
+from deamat.actuator.strain import drive, paper_eq4, thickness_strain
+from deamat.core.units import from_si, to_si
+from deamat.report.paper import printed
+from deamat.report.paper.entry import CORRECTED, Entry, entry
 
 StrainLaw = Callable[[Reals], Reals]
 

@@ -9,27 +9,27 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pipeline.actuator.beam import Beam, actuate, deflection, displacement
-from pipeline.actuator.elastica import deflect
-from pipeline.actuator.figure_of_merit import (
+from deamat.actuator.beam import Beam, actuate, deflection, displacement
+from deamat.actuator.elastica import deflect
+from deamat.actuator.figure_of_merit import (
     Unimorph,
     multilayer,
     no_electrodes,
     planar,
     single_layer,
 )
-from pipeline.actuator.optimum import (
+from deamat.actuator.optimum import (
     best_passive_thickness,
     modulus_ratio_at_fixed_active,
     thickness_ratio_at_fixed_active,
     thickness_ratio_at_fixed_total,
 )
-from pipeline.actuator.ranges import Reals
-from pipeline.actuator.stack import FIRST_LAYER_DOWN, Layer, Role, Stack
-from pipeline.actuator.strain import PULL_IN_STRAIN, drive
-from pipeline.report.paper import printed
-from pipeline.report.paper.actuators import PASSIVE, own
-from pipeline.report.paper.entry import Entry, entry
+from deamat.actuator.ranges import Reals
+from deamat.actuator.stack import FIRST_LAYER_DOWN, Layer, Role, Stack
+from deamat.actuator.strain import PULL_IN_STRAIN, drive
+from deamat.report.paper import printed
+from deamat.report.paper.actuators import PASSIVE, own
+from deamat.report.paper.entry import Entry, entry
 
 # Not printed. A strip of this length bends as moderately as the article says, a longer one not.
 ASSUMED_LENGTH_m = 0.015

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from pipeline.actuator.strain import PULL_IN_DRIVE, paper_eq4, thickness_strain
-from pipeline.core.units import from_si
-from pipeline.report.paper import printed
-from pipeline.report.paper.actuators import (
+from deamat.actuator.strain import PULL_IN_DRIVE, paper_eq4, thickness_strain
+from deamat.core.units import from_si
+from deamat.report.paper import printed
+from deamat.report.paper.actuators import (
     BY_EQUATION_4,
     bend,
     electrode_for,
@@ -16,7 +16,7 @@ from pipeline.report.paper.actuators import (
     literature,
     own,
 )
-from pipeline.report.paper.laws import FOOTNOTE, READINGS, Reading
+from deamat.report.paper.laws import FOOTNOTE, READINGS, Reading
 
 _EXAMPLE_DRIVE = 0.1
 

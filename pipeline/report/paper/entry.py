@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from pipeline.report.paper import printed
+from deamat.report.paper import printed
 
 CORRECTED = ".corrected"
 _DIGITS = 10  # kept in the file: beyond them the last bits of a machine's arithmetic show

@@ -6,18 +6,16 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import Law
-from pipeline.core.units import si_factor
-from pipeline.materials.card import MaterialCard
-from pipeline.materials.database import Database
-from pipeline.report.paper import printed
-from pipeline.report.paper.entry import Entry
-from pipeline.report.paper.lookup import ask, is_synthetic, missing, provenance
-
-FloatArray = NDArray[np.float64]
+from deamat.core.arrays import FloatArray
+from deamat.core.quantity import Quantity
+from deamat.core.records import Law
+from deamat.core.units import si_factor
+from deamat.materials.card import MaterialCard
+from deamat.materials.database import Database
+from deamat.report.paper import printed
+from deamat.report.paper.entry import Entry
+from deamat.report.paper.lookup import ask, is_synthetic, missing, provenance
 
 VISCOSITY, CONSISTENCY, INDEX = "viscosity", "flow_consistency", "flow_index"
 POLYNOMIAL, FLUID = "polynomial", "power-law-fluid"

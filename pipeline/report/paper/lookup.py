@@ -6,13 +6,13 @@ import math
 from collections.abc import Callable
 from typing import TypeVar
 
-from pipeline.core.errors import MissingProperty
-from pipeline.core.records import Condition, Law, PropertyRecord
-from pipeline.core.units import from_si, si_factor
-from pipeline.materials.card import MaterialCard
-from pipeline.materials.database import Database
-from pipeline.report.paper import printed
-from pipeline.report.paper.entry import Entry
+from deamat.core.errors import MissingProperty
+from deamat.core.records import Condition, Law, PropertyRecord
+from deamat.core.units import from_si, si_factor
+from deamat.materials.card import MaterialCard
+from deamat.materials.database import Database
+from deamat.report.paper import printed
+from deamat.report.paper.entry import Entry
 
 T = TypeVar("T")
 SYNTHETIC = "SYNTHETIC: simulated, not measured"

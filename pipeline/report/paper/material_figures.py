@@ -10,15 +10,15 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from pipeline.core.errors import MissingProperty
-from pipeline.core.properties import REFERENCE_AGE
-from pipeline.core.records import Law
-from pipeline.core.units import from_si
-from pipeline.materials.curves import CurvesError
-from pipeline.materials.database import Database, MissingMaterial
-from pipeline.report.paper import printed
-from pipeline.report.paper.entry import Entry
-from pipeline.report.paper.laws import (
+from deamat.core.errors import MissingProperty
+from deamat.core.properties import REFERENCE_AGE
+from deamat.core.records import Law
+from deamat.core.units import from_si
+from deamat.materials.curves import CurvesError
+from deamat.materials.database import Database, MissingMaterial
+from deamat.report.paper import printed
+from deamat.report.paper.entry import Entry
+from deamat.report.paper.laws import (
     FOOTNOTE,
     HOURS,
     PLAUSIBLE,
@@ -32,7 +32,7 @@ from pipeline.report.paper.laws import (
     rate_for,
     rates_of,
 )
-from pipeline.report.style import COLOURS
+from deamat.report.style import COLOURS
 
 Draw = Callable[[Axes], None]
 

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from pipeline.report.paper import printed
-from pipeline.report.paper.actuators import FILMS
-from pipeline.report.paper.discrepancies import Discrepancy
-from pipeline.report.paper.entry import CORRECTED, Entry
-from pipeline.report.paper.laws import is_fluid
-from pipeline.report.paper.material_figures import title_of
-from pipeline.report.paper.tables import TABLE4, run_of
+from deamat.report.paper import printed
+from deamat.report.paper.actuators import FILMS
+from deamat.report.paper.discrepancies import Discrepancy
+from deamat.report.paper.entry import CORRECTED, Entry
+from deamat.report.paper.laws import is_fluid
+from deamat.report.paper.material_figures import title_of
+from deamat.report.paper.tables import TABLE4, run_of
 
 _FAR_u = 2.0  # beyond so many standard uncertainties a material value is marked
 # ... and a computed one beyond this relative difference: the text says "about" of its figures, and
@@ -166,7 +166,7 @@ def render(
     viscosities : column of Table 3 to the viscosity at its handling time, and what to know of it
     """
     environment = Environment(
-        loader=PackageLoader("pipeline.report.paper", "."),
+        loader=PackageLoader("deamat.report.paper", "."),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,

@@ -8,7 +8,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from pipeline.core.units import to_si
+from deamat.core.units import to_si
 
 _TABLE1_UNITS = {
     **dict.fromkeys(("n_de", "eps_r"), "1"),

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import re
 
-from pipeline.core.present import readable_record
-from pipeline.core.properties import REFERENCE_AGE
-from pipeline.core.records import Condition
-from pipeline.core.units import to_si
-from pipeline.materials.card import MaterialCard
-from pipeline.materials.database import Database
-from pipeline.report.paper import printed
-from pipeline.report.paper.entry import Entry
-from pipeline.report.paper.lookup import ask, material_entry, missing, of_record
+from deamat.core.present import readable_record
+from deamat.core.properties import REFERENCE_AGE
+from deamat.core.records import Condition
+from deamat.core.units import to_si
+from deamat.materials.card import MaterialCard
+from deamat.materials.database import Database
+from deamat.report.paper import printed
+from deamat.report.paper.entry import Entry
+from deamat.report.paper.lookup import ask, material_entry, missing, of_record
 
 HANDLING, VISCOSITY_THEN = "handling_time", "viscosity_at_handling_time"
 ROOM_C = (22.0, 3.0)  # of the article, and how far an unheated bed may be from it

@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from pipeline.core.atomic import whole_folder, write_atomically
-from pipeline.materials.database import Database, open_database
-from pipeline.report.figures import technique_figure
-from pipeline.report.paper import printed
-from pipeline.report.paper.actuator_figures import ACTUATOR_FIGURES
-from pipeline.report.paper.actuators import table1, table5, totals
-from pipeline.report.paper.claims import figures
-from pipeline.report.paper.discrepancies import discrepancies
-from pipeline.report.paper.entry import CORRECTED, Entry, to_json
-from pipeline.report.paper.laws import Reading, is_fluid, reading, table2
-from pipeline.report.paper.material_figures import material_figures
-from pipeline.report.paper.page import Picture, render
-from pipeline.report.paper.tables import table3, table4, viscosity_then
+from deamat.core.atomic import whole_folder, write_atomically
+from deamat.materials.database import Database, open_database
+from deamat.report.figures import technique_figure
+from deamat.report.paper import printed
+from deamat.report.paper.actuator_figures import ACTUATOR_FIGURES
+from deamat.report.paper.actuators import table1, table5, totals
+from deamat.report.paper.claims import figures
+from deamat.report.paper.discrepancies import discrepancies
+from deamat.report.paper.entry import CORRECTED, Entry, to_json
+from deamat.report.paper.laws import Reading, is_fluid, reading, table2
+from deamat.report.paper.material_figures import material_figures
+from deamat.report.paper.page import Picture, render
+from deamat.report.paper.tables import table3, table4, viscosity_then
 
 FOLDER = "paper"
 _INPUTS = {

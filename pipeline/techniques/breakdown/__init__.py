@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from pipeline.core.technique import Technique
-from pipeline.techniques.breakdown.config import VERSION, YIELDS, BreakdownConfig
-from pipeline.techniques.breakdown.figure import draw
-from pipeline.techniques.breakdown.specimen import reduce
-from pipeline.techniques.breakdown.summary import summarise
+from deamat.core.technique import Technique
+from deamat.techniques.breakdown.config import VERSION, YIELDS, BreakdownConfig
+from deamat.techniques.breakdown.figure import draw
+from deamat.techniques.breakdown.specimen import reduce
+from deamat.techniques.breakdown.summary import summarise
 
 TECHNIQUE = Technique(
     key="breakdown",

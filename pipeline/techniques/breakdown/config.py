@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from pipeline.core.instruments import Declared
-from pipeline.techniques.breakdown.ramp import Criteria
+from deamat.core.instruments import Declared
+from deamat.techniques.breakdown.ramp import Criteria
 
 FIELD = "breakdown_field"
 STRENGTH, SHAPE, UNBIASED = "breakdown_strength", "weibull_shape", "weibull_shape_unbiased"

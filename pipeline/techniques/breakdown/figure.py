@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.core.errors import FitRefused
-from pipeline.core.records import FloatArray, Measurement, Summary
-from pipeline.core.units import from_si
-from pipeline.estimators.weibull import fit, quantile
-from pipeline.estimators.weibull_plot import confidence_band, plotting_positions, weibull_axis
-from pipeline.techniques.breakdown.summary import Sample, samples
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
+from deamat.core.records import Measurement, Summary
+from deamat.core.units import from_si
+from deamat.estimators.weibull.fit import fit, quantile
+from deamat.estimators.weibull.plot import confidence_band, plotting_positions, weibull_axis
+from deamat.techniques.breakdown.summary import Sample, samples
 
 _PERCENT = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 80.0, 95.0, 99.0)
 _FOOT = float(weibull_axis(0.01))

@@ -14,8 +14,8 @@ from typing import Literal
 
 import numpy as np
 
-from pipeline.core.errors import FitRefused
-from pipeline.core.records import FloatArray
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
 
 End = Literal["collapse", "amplifier limit", "turned down", "file ended", "flashover"]
 

@@ -8,22 +8,22 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from pipeline.core.errors import FitRefused
-from pipeline.core.quantity import Contribution, Quantity
-from pipeline.core.records import (
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
+from deamat.core.quantity import Contribution, Quantity
+from deamat.core.records import (
     Condition,
     Detail,
     Flag,
-    FloatArray,
     MeasuredValue,
     Measurement,
     Recording,
     Specimen,
 )
-from pipeline.core.technique import Context
-from pipeline.techniques._stress_strain import line_span, nothing_measured, relative_lines
-from pipeline.techniques.breakdown.config import FIELD, BreakdownConfig
-from pipeline.techniques.breakdown.ramp import Breakdown, Rise, audit_rise, find_breakdown
+from deamat.core.technique import Context
+from deamat.techniques._stress_strain import line_span, nothing_measured, relative_lines
+from deamat.techniques.breakdown.config import FIELD, BreakdownConfig
+from deamat.techniques.breakdown.ramp import Breakdown, Rise, audit_rise, find_breakdown
 
 _CONDITIONS = ("electrode_area_m2", "rate_V_per_s")
 _STYLE = (

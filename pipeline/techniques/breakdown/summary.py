@@ -10,29 +10,29 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.core.errors import FitRefused
-from pipeline.core.properties import property_key
-from pipeline.core.quantity import Contribution, Quantity
-from pipeline.core.records import (
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
+from deamat.core.properties import property_key
+from deamat.core.quantity import Contribution, Quantity
+from deamat.core.records import (
     Condition,
     Detail,
     Flag,
-    FloatArray,
     MeasuredValue,
     Measurement,
     PropertyRecord,
     Refusal,
     Summary,
 )
-from pipeline.core.technique import Context
-from pipeline.core.units import from_si
-from pipeline.estimators.weibull_goodness import GoodnessOfFit, LowOutlier
-from pipeline.estimators.weibull_goodness import goodness_of_fit as test_of_form
-from pipeline.estimators.weibull_goodness import low_outlier as test_of_lowest
-from pipeline.estimators.weibull_intervals import Inference, Interval, infer
-from pipeline.estimators.weibull_shape import unbiased_shape
-from pipeline.techniques._mean_record import Pair, merged_flags, origin_of
-from pipeline.techniques.breakdown.config import (
+from deamat.core.technique import Context
+from deamat.core.units import from_si
+from deamat.estimators.weibull.goodness import GoodnessOfFit, LowOutlier
+from deamat.estimators.weibull.goodness import goodness_of_fit as test_of_form
+from deamat.estimators.weibull.goodness import low_outlier as test_of_lowest
+from deamat.estimators.weibull.intervals import Inference, Interval, infer
+from deamat.estimators.weibull.shape import unbiased_shape
+from deamat.techniques._mean_record import Pair, merged_flags, origin_of
+from deamat.techniques.breakdown.config import (
     B1,
     B10,
     FIELD,

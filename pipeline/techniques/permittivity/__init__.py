@@ -11,17 +11,17 @@ Source: ASTM D150; Sikulskyi et al. 2022, Front. Robot. AI 9:1034914, section 3.
 
 from __future__ import annotations
 
-from pipeline.core.technique import Technique
-from pipeline.techniques.permittivity.config import (
+from deamat.core.technique import Technique
+from deamat.techniques.permittivity.config import (
     LOSS,
     MODULUS,
     PERMITTIVITY,
     VERSION,
     PermittivityConfig,
 )
-from pipeline.techniques.permittivity.figure import figure
-from pipeline.techniques.permittivity.reduce import reduce
-from pipeline.techniques.permittivity.summary import summarise
+from deamat.techniques.permittivity.figure import figure
+from deamat.techniques.permittivity.reduce import reduce
+from deamat.techniques.permittivity.summary import summarise
 
 TECHNIQUE = Technique(
     key="permittivity",

@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from pipeline.core.instruments import Declared
+from deamat.core.instruments import Declared
 
 PERMITTIVITY = "relative_permittivity"
 LOSS = "loss_tangent"

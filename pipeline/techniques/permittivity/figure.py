@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from pipeline.core.records import Measurement, Summary
-from pipeline.techniques.permittivity.config import PERMITTIVITY
+from deamat.core.records import Measurement, Summary
+from deamat.techniques.permittivity.config import PERMITTIVITY
 
 
 def figure(axes: Any, measurements: Sequence[Measurement], summary: Summary) -> None:

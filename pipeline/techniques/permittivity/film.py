@@ -6,14 +6,18 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from pipeline.core.errors import FitRefused
-from pipeline.core.quantity import Contribution, Quantity
-from pipeline.core.records import Flag
-from pipeline.core.stress_strain import register_length, scale_budget
-from pipeline.core.technique import Context
-from pipeline.core.units import from_si
-from pipeline.estimators.squeeze import squeeze_sensitivity, squeezed_stretch, sticking_modulus
-from pipeline.techniques.permittivity.config import MODULUS, PermittivityConfig
+from deamat.core.errors import FitRefused
+from deamat.core.quantity import Contribution, Quantity
+from deamat.core.records import Flag
+from deamat.core.stress_strain import register_length, scale_budget
+from deamat.core.technique import Context
+from deamat.core.units import from_si
+from deamat.estimators.dielectric.squeeze import (
+    squeeze_sensitivity,
+    squeezed_stretch,
+    sticking_modulus,
+)
+from deamat.techniques.permittivity.config import MODULUS, PermittivityConfig
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +66,7 @@ def film_of(numbers: Mapping[str, Quantity], context: Context) -> Film:
     ------
     FitRefused : something of this is not known, or the film is squeezed beyond the declared limit
 
-    Source: see `pipeline.estimators.squeeze`.
+    Source: see `deamat.estimators.dielectric.squeeze`.
     """
     config: PermittivityConfig = context.config
     read = register_length(numbers, "thickness_m")

@@ -7,24 +7,29 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.core.errors import FitRefused
-from pipeline.core.quantity import Contribution, Quantity
-from pipeline.core.records import (
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
+from deamat.core.quantity import Contribution, Quantity
+from deamat.core.records import (
     Condition,
     Detail,
     Flag,
-    FloatArray,
     MeasuredValue,
     Measurement,
     Recording,
     Specimen,
 )
-from pipeline.core.technique import Context
-from pipeline.estimators.sweep import Position, position, series_resistance, slope_per_decade
-from pipeline.techniques._stress_strain import nothing_measured, recorded, refusal, relative_lines
-from pipeline.techniques.permittivity.config import LOSS, PERMITTIVITY, PermittivityConfig
-from pipeline.techniques.permittivity.film import Film, film_flags, film_of
-from pipeline.techniques.permittivity.spectrum import Spectrum, permittivity_of, spectrum_of
+from deamat.core.technique import Context
+from deamat.estimators.dielectric.sweep import (
+    Position,
+    position,
+    series_resistance,
+    slope_per_decade,
+)
+from deamat.techniques._stress_strain import nothing_measured, recorded, refusal, relative_lines
+from deamat.techniques.permittivity.config import LOSS, PERMITTIVITY, PermittivityConfig
+from deamat.techniques.permittivity.film import Film, film_flags, film_of
+from deamat.techniques.permittivity.spectrum import Spectrum, permittivity_of, spectrum_of
 
 _LIMIT_TO_SIGMA = math.sqrt(3.0)  # a limit without further knowledge: rectangular, GUM 4.3.7
 _RESISTANCE_TOLD = 3.0  # standard errors from which a series resistance is told from noise
@@ -86,7 +91,7 @@ def reduce(specimen: Specimen, recording: Recording | None, context: Context) ->
     Parameters
     ----------
     specimen : see `film_of` for the numbers
-    recording : frequency and one pair of `pipeline.estimators.impedance.PAIRS`
+    recording : frequency and one pair of `deamat.estimators.impedance.PAIRS`
     context : with a `PermittivityConfig` and the compressive modulus among its needs
 
     Source: ASTM D150; LCR-6000 manual, 13.1 for the limits of C and D.

@@ -7,20 +7,21 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.core.errors import FitRefused
-from pipeline.core.instruments import LcrAccuracy
-from pipeline.core.records import FloatArray, Recording
-from pipeline.core.units import from_si
-from pipeline.estimators.edge_field import edge_terms, vacuum_capacitance
-from pipeline.estimators.impedance import (
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
+from deamat.core.instruments import LcrAccuracy
+from deamat.core.records import Recording
+from deamat.core.units import from_si
+from deamat.estimators.dielectric.edge_field import edge_terms, vacuum_capacitance
+from deamat.estimators.dielectric.impedance import (
     PAIRS,
     ComplexArray,
     complex_capacitance,
     impedance,
     loss_tangent,
 )
-from pipeline.techniques.permittivity.config import PermittivityConfig
-from pipeline.techniques.permittivity.film import Film
+from deamat.techniques.permittivity.config import PermittivityConfig
+from deamat.techniques.permittivity.film import Film
 
 _FAST = "fast"
 

@@ -6,10 +6,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from pipeline.core.records import Detail, Measurement, PropertyRecord, Summary
-from pipeline.core.technique import Context
-from pipeline.techniques._mean_record import summarise_by_mean
-from pipeline.techniques.permittivity.config import (
+from deamat.core.records import Detail, Measurement, PropertyRecord, Summary
+from deamat.core.technique import Context
+from deamat.techniques._mean_record import summarise_by_mean
+from deamat.techniques.permittivity.config import (
     LOSS,
     PERMITTIVITY,
     VERSION,

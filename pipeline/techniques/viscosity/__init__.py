@@ -5,26 +5,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from pipeline.core.errors import FitRefused
-from pipeline.core.records import (
-    FloatArray,
-    MeasuredValue,
-    Measurement,
-    Recording,
-    Refusal,
-    Specimen,
-    Summary,
-)
-from pipeline.core.technique import Context, Technique
-from pipeline.techniques._mean_record import summarise_by_mean
-from pipeline.techniques.viscosity.clock import since_mixing_s
-from pipeline.techniques.viscosity.config import ViscosityConfig
-from pipeline.techniques.viscosity.figure import draw
-from pipeline.techniques.viscosity.flow_curve import flow_curve_values
-from pipeline.techniques.viscosity.pooled import fit_law, fit_runs, laws_of, refuse_mixed_units
-from pipeline.techniques.viscosity.readings import Readings, audited, from_curve
-from pipeline.techniques.viscosity.time_law import TimeLaw
-from pipeline.techniques.viscosity.values import (
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
+from deamat.core.records import MeasuredValue, Measurement, Recording, Refusal, Specimen, Summary
+from deamat.core.technique import Context, Technique
+from deamat.techniques._mean_record import summarise_by_mean
+from deamat.techniques.viscosity.clock import since_mixing_s
+from deamat.techniques.viscosity.config import ViscosityConfig
+from deamat.techniques.viscosity.figure import draw
+from deamat.techniques.viscosity.flow_curve import flow_curve_values
+from deamat.techniques.viscosity.pooled import fit_law, fit_runs, laws_of, refuse_mixed_units
+from deamat.techniques.viscosity.readings import Readings, audited, from_curve
+from deamat.techniques.viscosity.time_law import TimeLaw
+from deamat.techniques.viscosity.values import (
     CONSISTENCY,
     CONSISTENCY_WIDE_CUP,
     DOUBLING,
@@ -34,7 +27,7 @@ from pipeline.techniques.viscosity.values import (
     asked_of,
     measured,
 )
-from pipeline.techniques.viscosity.window import Windowed, windowed
+from deamat.techniques.viscosity.window import Windowed, windowed
 
 VERSION = 2
 

@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pipeline.core.records import Flag
-from pipeline.estimators.linear import fit_linear
-from pipeline.techniques.viscosity.readings import Readings
+from deamat.core.records import Flag
+from deamat.estimators.least_squares.linear import fit_linear
+from deamat.techniques.viscosity.readings import Readings
 
 # A step of more than so many standard uncertainties is not the calibration's.
 _BELIEVABLE = 3.0

@@ -7,8 +7,9 @@ from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 import numpy as np
 
-from pipeline.core.errors import FitRefused
-from pipeline.core.records import FloatArray, Recording, Specimen
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
+from deamat.core.records import Recording, Specimen
 
 _DAY_S = 86400.0
 _HALF_DAY_S = 43200.0

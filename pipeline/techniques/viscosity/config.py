@@ -7,7 +7,7 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
-from pipeline.core.instruments import Declared
+from deamat.core.instruments import Declared
 
 
 class RateFactor(Declared):

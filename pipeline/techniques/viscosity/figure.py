@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from pipeline.core.records import FloatArray, Law, Measurement, Summary
-from pipeline.core.units import from_si
-from pipeline.techniques.viscosity.values import VISCOSITY
+from deamat.core.arrays import FloatArray
+from deamat.core.records import Law, Measurement, Summary
+from deamat.core.units import from_si
+from deamat.techniques.viscosity.values import VISCOSITY
 
 _POINTS = 200
 _HOURS_FROM_S = 7200.0

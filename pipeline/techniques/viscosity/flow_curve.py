@@ -7,22 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.core.errors import FitRefused
-from pipeline.core.properties import property_key
-from pipeline.core.quantity import Contribution, Quantity
-from pipeline.core.records import (
-    Condition,
-    Flag,
-    FloatArray,
-    MeasuredValue,
-    Recording,
-    Specimen,
-)
-from pipeline.estimators.linear import LinearFit, fit_linear
-from pipeline.estimators.selection import choose
-from pipeline.formats.flow_samples import SEPARATOR
-from pipeline.formats.viscometer import lines_text
-from pipeline.techniques.viscosity.values import CONSISTENCY, INDEX, VISCOSITY
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
+from deamat.core.properties import property_key
+from deamat.core.quantity import Contribution, Quantity
+from deamat.core.records import Condition, Flag, MeasuredValue, Recording, Specimen
+from deamat.estimators.least_squares.linear import LinearFit, fit_linear
+from deamat.estimators.selection import choose
+from deamat.formats.flow_samples import SEPARATOR
+from deamat.formats.viscometer import lines_text
+from deamat.techniques.viscosity.values import CONSISTENCY, INDEX, VISCOSITY
 
 _MIN_READINGS = 5
 _TEMPERATURE_SPREAD_K = 1.0

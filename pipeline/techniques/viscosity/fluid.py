@@ -14,17 +14,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pipeline.core.errors import FitRefused
-from pipeline.core.laws import FORMS, POWER_LAW_FLUID
-from pipeline.core.records import Detail, Flag, FloatArray
-from pipeline.estimators.linear import fit_linear
-from pipeline.estimators.polynomial import PolynomialFit, fit_polynomial
-from pipeline.estimators.power_law import PowerLawFit, fit_power_law
-from pipeline.estimators.selection import DECISIVE, aicc, choose
-from pipeline.techniques.viscosity.config import RateFactor, ViscosityConfig
-from pipeline.techniques.viscosity.readings import Readings
-from pipeline.techniques.viscosity.time_law import TimeLaw, drift_of, relative_error
-from pipeline.techniques.viscosity.window import Windowed, combined, common_range
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
+from deamat.core.laws import FORMS, POWER_LAW_FLUID
+from deamat.core.records import Detail, Flag
+from deamat.estimators.least_squares.linear import fit_linear
+from deamat.estimators.least_squares.polynomial import PolynomialFit, fit_polynomial
+from deamat.estimators.least_squares.power_law import PowerLawFit, fit_power_law
+from deamat.estimators.selection import DECISIVE, aicc, choose
+from deamat.techniques.viscosity.config import RateFactor, ViscosityConfig
+from deamat.techniques.viscosity.readings import Readings
+from deamat.techniques.viscosity.time_law import TimeLaw, drift_of, relative_error
+from deamat.techniques.viscosity.window import Windowed, combined, common_range
 
 _MAX_DEGREE = {"K": 4, "n": 2}
 _CHECKED_TIMES = 200

@@ -9,20 +9,21 @@ from functools import cache, partial
 
 import numpy as np
 
-from pipeline.core.errors import FitRefused
-from pipeline.core.laws import EXPONENTIAL, FORMS, POLYNOMIAL, POWER_LAW_TO_GEL, evaluate
-from pipeline.core.records import Detail, Flag, FloatArray
-from pipeline.estimators.fit import Fit
-from pipeline.estimators.linear import fit_linear
-from pipeline.estimators.monotone import fit_non_decreasing
-from pipeline.estimators.nonlinear import NonlinearFit, fit_nonlinear
-from pipeline.estimators.polynomial import PolynomialFit
-from pipeline.estimators.selection import Choice, choose, choose_for
-from pipeline.techniques.viscosity.calibration import settled
-from pipeline.techniques.viscosity.config import ViscosityConfig
-from pipeline.techniques.viscosity.readings import Readings
-from pipeline.techniques.viscosity.time_law import TimeLaw, drift_of, relative_error
-from pipeline.techniques.viscosity.window import Windowed, combined, common_range
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
+from deamat.core.laws import EXPONENTIAL, FORMS, POLYNOMIAL, POWER_LAW_TO_GEL, evaluate
+from deamat.core.records import Detail, Flag
+from deamat.estimators.least_squares.fit import Fit
+from deamat.estimators.least_squares.linear import fit_linear
+from deamat.estimators.least_squares.monotone import fit_non_decreasing
+from deamat.estimators.least_squares.nonlinear import NonlinearFit, fit_nonlinear
+from deamat.estimators.least_squares.polynomial import PolynomialFit
+from deamat.estimators.selection import Choice, choose, choose_for
+from deamat.techniques.viscosity.calibration import settled
+from deamat.techniques.viscosity.config import ViscosityConfig
+from deamat.techniques.viscosity.readings import Readings
+from deamat.techniques.viscosity.time_law import TimeLaw, drift_of, relative_error
+from deamat.techniques.viscosity.window import Windowed, combined, common_range
 
 # A law that predicts left-out readings worse than the best by more than this is flagged.
 _PREDICTS_WORSE = 1.1

@@ -9,17 +9,18 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import stdtridf
 
-from pipeline.core.errors import FitRefused
-from pipeline.core.laws import FORMS, POLYNOMIAL, POWER_LAW_FLUID
-from pipeline.core.properties import property_key
-from pipeline.core.records import FloatArray, Law, Origin, Specimen
-from pipeline.estimators.mean import coverage_factor
-from pipeline.techniques.viscosity.config import ViscosityConfig
-from pipeline.techniques.viscosity.fluid import fit_fluid, is_swept
-from pipeline.techniques.viscosity.newtonian import fit_newtonian
-from pipeline.techniques.viscosity.time_law import TimeLaw
-from pipeline.techniques.viscosity.values import CONSISTENCY, INDEX, VISCOSITY
-from pipeline.techniques.viscosity.window import Windowed
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
+from deamat.core.laws import FORMS, POLYNOMIAL, POWER_LAW_FLUID
+from deamat.core.properties import property_key
+from deamat.core.records import Law, Origin, Specimen
+from deamat.estimators.mean import coverage_factor
+from deamat.techniques.viscosity.config import ViscosityConfig
+from deamat.techniques.viscosity.fluid import fit_fluid, is_swept
+from deamat.techniques.viscosity.newtonian import fit_newtonian
+from deamat.techniques.viscosity.time_law import TimeLaw
+from deamat.techniques.viscosity.values import CONSISTENCY, INDEX, VISCOSITY
+from deamat.techniques.viscosity.window import Windowed
 
 _CHECKED_TIMES = 5
 # Batches of one mixture never differ by so much; Pa.s and mPa.s differ by a thousand.

@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pipeline.core.errors import FitRefused, OutOfRange
-from pipeline.core.instruments import Machine
-from pipeline.core.records import Flag, FloatArray, Recording
-from pipeline.core.viscometer import full_scale_Pas
-from pipeline.formats.viscometer import lines_text
-from pipeline.techniques.viscosity.config import ViscosityConfig
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused, OutOfRange
+from deamat.core.instruments import Machine
+from deamat.core.records import Flag, Recording
+from deamat.core.viscometer import full_scale_Pas
+from deamat.formats.viscometer import lines_text
+from deamat.techniques.viscosity.config import ViscosityConfig
 
 # Torque is printed to 0.1 % and viscosity to 1 mPa.s: half of each, and as much again for an
 # instrument that cuts where it should round.

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.core.errors import FitRefused, OutOfRange
-from pipeline.core.laws import evaluate
-from pipeline.core.records import Detail, Flag, FloatArray
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused, OutOfRange
+from deamat.core.laws import evaluate
+from deamat.core.records import Detail, Flag
 
 _BISECTIONS = 200
 

@@ -7,13 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.core.errors import FitRefused, OutOfRange
-from pipeline.core.properties import property_key
-from pipeline.core.quantity import Contribution, Quantity
-from pipeline.core.records import Condition, Flag, FloatArray, MeasuredValue
-from pipeline.techniques.viscosity.config import ViscosityConfig
-from pipeline.techniques.viscosity.time_law import TimeLaw
-from pipeline.techniques.viscosity.window import Windowed
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused, OutOfRange
+from deamat.core.properties import property_key
+from deamat.core.quantity import Contribution, Quantity
+from deamat.core.records import Condition, Flag, MeasuredValue
+from deamat.techniques.viscosity.config import ViscosityConfig
+from deamat.techniques.viscosity.time_law import TimeLaw
+from deamat.techniques.viscosity.window import Windowed
 
 VISCOSITY = "viscosity"
 DOUBLING = "viscosity_doubling_time"

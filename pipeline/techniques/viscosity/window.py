@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pipeline.core.errors import FitRefused
-from pipeline.core.records import Flag
-from pipeline.techniques.viscosity.config import ViscosityConfig
-from pipeline.techniques.viscosity.readings import Readings, from_curve
+from deamat.core.errors import FitRefused
+from deamat.core.records import Flag
+from deamat.techniques.viscosity.config import ViscosityConfig
+from deamat.techniques.viscosity.readings import Readings, from_curve
 
 _INTERVAL_CHANGE = 2.0  # a sampling interval that grows by more than this is another method
 

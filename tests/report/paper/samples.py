@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from pipeline.core.ledger import Provenance
-from pipeline.core.properties import property_key
-from pipeline.core.quantity import Quantity
-from pipeline.core.records import Condition, Law, PropertyRecord, Refusal
-from pipeline.materials.card import Credit, MaterialCard
-from pipeline.materials.database import write_database
+from deamat.core.ledger import Provenance
+from deamat.core.properties import property_key
+from deamat.core.quantity import Quantity
+from deamat.core.records import Condition, Law, PropertyRecord, Refusal
+from deamat.materials.card import Credit, MaterialCard
+from deamat.materials.database import write_database
 
 TWIN = Credit("twin-1", "Simulated", "nobody", "CC BY 4.0", "a twin", synthetic=True)
 LAB = Credit("lab-1", "Measured", "Lab One", "CC BY 4.0", "", synthetic=False)

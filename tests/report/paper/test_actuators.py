@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from pipeline.report.paper import printed
-from pipeline.report.paper.actuators import electrode_for, table1, table5, totals
-from pipeline.report.paper.claims import figures, strip
-from pipeline.report.paper.entry import Entry
+from deamat.report.paper import printed
+from deamat.report.paper.actuators import electrode_for, table1, table5, totals
+from deamat.report.paper.claims import figures, strip
+from deamat.report.paper.entry import Entry
 
 
 @pytest.fixture(scope="module")

@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pipeline.core.ledger import Provenance
-from pipeline.materials.card import MaterialCard
-from pipeline.materials.database import Database, open_database, write_database
-from pipeline.report.paper import laws, printed
-from pipeline.report.paper.entry import Entry
-from pipeline.report.paper.laws import READINGS, Reading, reading
+from deamat.core.ledger import Provenance
+from deamat.materials.card import MaterialCard
+from deamat.materials.database import Database, open_database, write_database
+from deamat.report.paper import laws, printed
+from deamat.report.paper.entry import Entry
+from deamat.report.paper.laws import READINGS, Reading, reading
 
 from .samples import TWIN, database, law
 

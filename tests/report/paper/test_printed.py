@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.core.units import si_factor
-from pipeline.report.paper import printed
+from deamat.core.units import si_factor
+from deamat.report.paper import printed
 
 TABLES = ("table1", "table2", "table3", "table4", "table4_manufacturer", "table5", "electrode")
 

@@ -9,13 +9,13 @@ from typing import Any
 
 import pytest
 
-from pipeline.core.errors import ConfigError
-from pipeline.materials.database import DatabaseError, open_database
-from pipeline.report.paper import printed
-from pipeline.report.paper.discrepancies import discrepancies
-from pipeline.report.paper.entry import CORRECTED
-from pipeline.report.paper.laws import Reading
-from pipeline.report.paper.write import collect, write_paper
+from deamat.core.errors import ConfigError
+from deamat.materials.database import DatabaseError, open_database
+from deamat.report.paper import printed
+from deamat.report.paper.discrepancies import discrepancies
+from deamat.report.paper.entry import CORRECTED
+from deamat.report.paper.laws import Reading
+from deamat.report.paper.write import collect, write_paper
 
 from .samples import database
 

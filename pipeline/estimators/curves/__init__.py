@@ -1,0 +1,1 @@
+"""Measured curves: branches and windows, slopes, contact points, unloading stiffness."""

@@ -1,0 +1,1 @@
+"""What an LCR meter sees of a film: impedance, edge field, squeeze, frequency sweeps."""

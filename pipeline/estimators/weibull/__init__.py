@@ -1,0 +1,1 @@
+"""The Weibull distribution of breakdown: fit, exact intervals, goodness, area scaling."""
