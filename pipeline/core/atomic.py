@@ -40,21 +40,61 @@ def write_atomically(path: Path, data: bytes) -> None:
         part.replace(path)
     finally:
         part.unlink(missing_ok=True)
-    _synchronise_folder(path.parent)
+    _synchronise(path.parent)
 
 
-def _synchronise_folder(folder: Path) -> None:
-    # Without it a power cut may forget the new name although the bytes are on the disk.
-    descriptor = os.open(folder, os.O_RDONLY)
+def turn_link(link: Path, target: str) -> None:
+    """Let a link lead to `target` in one step; it is made if it is not there.
+
+    Raises
+    ------
+    OSError : something that is no file and no link stands at `link`
+    """
+    part = link.with_name(f".{link.name}{PART_SUFFIX}")
+    part.unlink(missing_ok=True)
+    part.symlink_to(target)
+    part.replace(link)
+    _synchronise(link.parent)
+
+
+def rename_whole(folder: Path, place: Path) -> None:
+    """Synchronise everything in a folder to the disk, then let it take its name in one step.
+
+    Raises
+    ------
+    OSError : a folder that is not empty stands at `place`
+    """
+    _synchronise_tree(folder)
+    folder.rename(place)
+    _synchronise(place.parent)
+
+
+@contextmanager
+def new_folder(place: Path) -> Iterator[Path]:
+    """Yield an empty folder to fill, which becomes `place` once it is filled without an error.
+
+    Parameters
+    ----------
+    place : what must not be there yet; its parent is made if it is not there
+
+    Raises
+    ------
+    OSError : a folder that is not empty stands at `place`
+    """
+    place.parent.mkdir(parents=True, exist_ok=True)
+    part = place.with_name(f".{place.name}{PART_SUFFIX}")
+    shutil.rmtree(part, ignore_errors=True)  # what a run that was killed left behind
+    part.mkdir()
     try:
-        os.fsync(descriptor)
+        yield part
+        rename_whole(part, place)
     finally:
-        os.close(descriptor)
+        shutil.rmtree(part, ignore_errors=True)
 
 
 @contextmanager
 def whole_folder(place: Path) -> Iterator[Path]:
-    """Give an empty folder to fill; where nothing fails it takes the place of `place` in one step.
+    """Yield an empty folder to fill, which replaces `place` once it is filled without an error.
 
     `place` is a link that leads to one of two hidden folders beside it. The one that it does not
     lead to is filled, the link is turned, and the other one is removed: a reader finds the old
@@ -79,14 +119,25 @@ def whole_folder(place: Path) -> Iterator[Path]:
     whole = False
     try:
         yield new
-        _synchronise_folder(new)
-        link = place.with_name(f".{place.name}{PART_SUFFIX}")
-        link.unlink(missing_ok=True)
-        link.symlink_to(new.name)
-        link.replace(place)
+        _synchronise_tree(new)
+        turn_link(place, new.name)
         whole = True
     finally:
         if not whole:
             shutil.rmtree(new, ignore_errors=True)
-    _synchronise_folder(place.parent)
     shutil.rmtree(old, ignore_errors=True)
+
+
+def _synchronise_tree(folder: Path) -> None:
+    for path in sorted(folder.rglob("*")):
+        _synchronise(path)
+    _synchronise(folder)
+
+
+def _synchronise(path: Path) -> None:
+    # Without it a power cut may forget a new name although the bytes are on the disk.
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

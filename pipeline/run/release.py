@@ -12,6 +12,7 @@ import os
 import shutil
 from pathlib import Path
 
+from deamat.core.atomic import rename_whole, turn_link
 from deamat.run.published import FACES, as_listed, known, leads_to
 
 _KEPT = 3  # releases beside the current one; an auditor may look back, a disk must not fill
@@ -48,9 +49,6 @@ class Release:
 
     def publish(self, name: str) -> Path:
         """Make the release whole and current."""
-        for path in sorted(self.building.rglob("*")):
-            _sync(path)
-        _sync(self.building)
         place = self.releases / name
         number = 1
         while place.exists() and not _same(self.building, place):
@@ -59,8 +57,7 @@ class Release:
         if place.exists():
             shutil.rmtree(self.building)
         else:
-            self.building.rename(place)
-        _sync(self.releases)
+            rename_whole(self.building, place)
         _point(self.releases / "current", place.name)
         for face in FACES:
             _point(self.processed / face, f"releases/current/{face}")
@@ -75,14 +72,8 @@ class Release:
 
 
 def _point(link: Path, target: str) -> None:
-    """Swap a link in one step."""
-    if leads_to(link, target):
-        return
-    beside = link.with_name(f".{link.name}.new")
-    beside.unlink(missing_ok=True)
-    beside.symlink_to(target)
-    beside.replace(link)
-    _sync(link.parent)
+    if not leads_to(link, target):
+        turn_link(link, target)
 
 
 def _same(one: Path, other: Path) -> bool:
@@ -91,11 +82,3 @@ def _same(one: Path, other: Path) -> bool:
     return names[0] == names[1] and all(
         filecmp.cmp(one / n, other / n, shallow=False) for n in names[0]
     )
-
-
-def _sync(path: Path) -> None:
-    handle = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)

@@ -8,7 +8,7 @@ table in kV for 30:1; for 40:1 no log at all, but the highest voltage that the a
 showed, to 10 V, in the register; readings of a micrometer; one calibration error of voltage
 monitor and of micrometer for the whole campaign. A film that would break at the start is started
 lower, as if somebody had known.
-What is not: flashovers (see `ramp_quirks`), conditioning, heating, the contraction of the film
+What is not: flashovers, conditioning, heating, the contraction of the film
 under the field, thickness that varies over one film, or strength that depends on thickness.
 
 The paper prints no Weibull shape. The twin's own truth is 12, 10, 9 and 8 for 10:1 to 40:1: the

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import json
-import os
-import shutil
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import asdict
-from functools import reduce
 from pathlib import Path
 
+from deamat.core.atomic import new_folder, write_atomically
 from deamat.core.errors import ConfigError
 from deamat.twin.breakdown import breakdown_part
 from deamat.twin.compression import compression_part
@@ -17,7 +15,6 @@ from deamat.twin.handling import handling_part
 from deamat.twin.nanoindentation import nanoindentation_part
 from deamat.twin.part import SYNTHETIC, Part
 from deamat.twin.permittivity import permittivity_part
-from deamat.twin.quirks import Quirk
 from deamat.twin.tension import tension_part
 from deamat.twin.viscosity import viscosity_part
 from deamat.twin.writers import manifest
@@ -75,18 +72,17 @@ def simulate(out: Path, seed: int, truth_out: Path | None = None) -> Path:
         )
     campaign = write_campaign(out, seed)
     if truth_out is not None:
-        _write_whole(truth_out, truth_json(seed))
+        write_atomically(truth_out, truth_json(seed))
     return campaign
 
 
-def write_campaign(out: Path, seed: int, quirks: Sequence[Quirk] = ()) -> Path:
+def write_campaign(out: Path, seed: int) -> Path:
     """Write a simulated campaign into a fresh folder under `out`, whole or not at all.
 
     Parameters
     ----------
     out : folder of campaigns, made if it is not there
     seed : of all random streams
-    quirks : faults to build into the files before the manifest is made, in turn
 
     Returns
     -------
@@ -94,7 +90,7 @@ def write_campaign(out: Path, seed: int, quirks: Sequence[Quirk] = ()) -> Path:
 
     Raises
     ------
-    ConfigError : the campaign is there already, the seed is negative, or a quirk names no file
+    ConfigError : the campaign is there already, or the seed is negative
     """
     target = out / NAME
     if target.exists():
@@ -102,25 +98,19 @@ def write_campaign(out: Path, seed: int, quirks: Sequence[Quirk] = ()) -> Path:
             f"{target} exists already and raw files are never overwritten; "
             "remove it or choose another folder"
         )
-    contents = campaign_files(seed, quirks)
-    beside = out / f".{NAME}.part"
-    if beside.exists():
-        shutil.rmtree(beside)  # what a run that was killed left behind
-    try:
+    contents = campaign_files(seed)
+    with new_folder(target) as folder:
         for path, data in contents.items():
-            _write_synced(beside / path, data)
-        beside.rename(target)
-    finally:
-        shutil.rmtree(beside, ignore_errors=True)
+            (folder / path).parent.mkdir(parents=True, exist_ok=True)
+            (folder / path).write_bytes(data)
     return target
 
 
-def campaign_files(seed: int, quirks: Sequence[Quirk] = ()) -> dict[str, bytes]:
+def campaign_files(seed: int) -> dict[str, bytes]:
     """Make all files of a campaign in memory: path relative to it to content."""
-    contents: Mapping[str, bytes] = {"campaign.toml": _CAMPAIGN.format(seed=seed).encode()}
+    contents = {"campaign.toml": _CAMPAIGN.format(seed=seed).encode()}
     for part in PARTS:
         contents = {**contents, **part(seed).files}
-    contents = reduce(lambda files, quirk: quirk(files), quirks, contents)
     return {**contents, "MANIFEST.sha256": manifest(contents)}
 
 
@@ -137,17 +127,3 @@ def truth_json(seed: int) -> bytes:
         "specimens": {name: dict(own) for part in parts for name, own in part.specimens.items()},
     }
     return (json.dumps(document, indent=1) + "\n").encode()
-
-
-def _write_whole(path: Path, data: bytes) -> None:
-    beside = path.with_name(f".{path.name}.part")
-    _write_synced(beside, data)
-    beside.replace(path)
-
-
-def _write_synced(path: Path, data: bytes) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("wb") as file:
-        file.write(data)
-        file.flush()
-        os.fsync(file.fileno())

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from deamat.core.atomic import whole_folder, write_atomically
+from deamat.core.atomic import new_folder, turn_link, whole_folder, write_atomically
 
 
 def test_writes_the_bytes_and_makes_the_folder(tmp_path: Path) -> None:
@@ -132,3 +132,49 @@ def test_a_folder_that_fails_leaves_the_old_one(tmp_path: Path) -> None:
         stop_halfway()
     assert (place / "page").read_text() == "old"
     assert len(list(tmp_path.iterdir())) == 2
+
+
+def test_a_new_folder_appears_once_it_is_filled(tmp_path: Path) -> None:
+    place = tmp_path / "raw" / "campaign"
+    with new_folder(place) as folder:
+        (folder / "deep").mkdir()
+        (folder / "deep" / "file").write_text("content")
+        assert not place.exists()
+    assert (place / "deep" / "file").read_text() == "content"
+    assert [p.name for p in place.parent.iterdir()] == ["campaign"]
+
+
+def test_a_new_folder_never_replaces_one_that_is_there(tmp_path: Path) -> None:
+    place = tmp_path / "campaign"
+    place.mkdir()
+    (place / "file").write_text("old")
+    with pytest.raises(OSError, match="not empty"), new_folder(place) as folder:
+        (folder / "file").write_text("new")
+    assert (place / "file").read_text() == "old"
+    assert [p.name for p in tmp_path.iterdir()] == ["campaign"]
+
+
+def test_everything_in_a_new_folder_is_on_the_disk_before_it_takes_its_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    place = tmp_path / "campaign"
+    seen: list[bool] = []
+    really = os.fsync
+
+    def watched(descriptor: int) -> None:
+        seen.append(place.exists())
+        really(descriptor)
+
+    monkeypatch.setattr(os, "fsync", watched)
+    with new_folder(place) as folder:
+        (folder / "deep").mkdir()
+        (folder / "deep" / "file").write_text("content")
+    assert seen == [False, False, False, True]  # file, two folders, then the folder of the name
+
+
+def test_a_link_is_turned_in_one_step(tmp_path: Path) -> None:
+    link = tmp_path / "current"
+    for target in ("one", "two"):
+        turn_link(link, target)
+        assert str(link.readlink()) == target
+    assert [p.name for p in tmp_path.iterdir()] == ["current"]

@@ -37,8 +37,9 @@ from deamat.twin.breakdown import (
 )
 from deamat.twin.draws import MACHINE, MICROMETER
 from deamat.twin.part import SYNTHETIC
-from deamat.twin.quirks import Quirk, as_utf16, cut_short
-from deamat.twin.ramp_quirks import (
+from deamat.twin.truth import true_value
+from tests.twin.quirks import Quirk, as_utf16, cut_short
+from tests.twin.ramp_quirks import (
     ended_early,
     in_volts,
     mislabelled,
@@ -47,7 +48,6 @@ from deamat.twin.ramp_quirks import (
     without_current,
     without_spike,
 )
-from deamat.twin.truth import true_value
 
 DAQ = "breakdown/sylgard-182-10to1/synthetic-1.csv"
 PLAIN = "breakdown/sylgard-182-30to1/synthetic-2.csv"

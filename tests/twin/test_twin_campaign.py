@@ -16,13 +16,12 @@ import numpy as np
 import pytest
 
 from deamat.core.errors import ConfigError
-from deamat.twin import campaign
 from deamat.twin.campaign import NAME, PARTS, SEED, campaign_files, simulate, write_campaign
 from deamat.twin.compression import simulate_compression
-from deamat.twin.quirks import as_utf16, cut_short, open_ended
 from deamat.twin.tension import simulate_tension
 from deamat.twin.truth import AGED, materials, truth_table
 from deamat.twin.writers import bluehill_csv, chatillon_log
+from tests.twin.quirks import as_utf16, cut_short, open_ended, quirky_campaign
 
 COMMITTED = Path(__file__).resolve().parents[2] / "raw" / NAME
 LOG = "compression/sylgard-182-40to1/synthetic-2-months-3.txt"
@@ -236,15 +235,15 @@ def test_a_write_that_fails_leaves_nothing_behind(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     written: list[Path] = []
-    write = campaign._write_synced
+    write = Path.write_bytes
 
-    def full_disk(path: Path, data: bytes) -> None:
+    def full_disk(path: Path, data: bytes) -> int:
         if len(written) == 3:
             raise OSError(28, "No space left on device")
         written.append(path)
-        write(path, data)
+        return write(path, data)
 
-    monkeypatch.setattr(campaign, "_write_synced", full_disk)
+    monkeypatch.setattr(Path, "write_bytes", full_disk)
     with pytest.raises(OSError, match="No space left"):
         write_campaign(tmp_path, 7)
     assert list(tmp_path.iterdir()) == []
@@ -260,14 +259,14 @@ def test_what_a_killed_run_left_is_cleared_away(tmp_path: Path) -> None:
 
 
 def test_quirks_change_their_file_and_the_manifest_agrees(contents: dict[str, bytes]) -> None:
-    quirky = campaign_files(SEED, [cut_short(CSV), open_ended(LOG)])
+    quirky = quirky_campaign(SEED, cut_short(CSV), open_ended(LOG))
     changed = {path for path in contents if quirky[path] != contents[path]}
     assert changed == {CSV, LOG, "MANIFEST.sha256"}
     assert quirky[LOG] == contents[LOG][:-2]
     assert quirky[CSV] == contents[CSV][: len(quirky[CSV])]
     assert quirky[CSV][-1:].isdigit()
     assert hashlib.sha256(quirky[CSV]).hexdigest() in quirky["MANIFEST.sha256"].decode()
-    wide = campaign_files(SEED, [as_utf16(LOG)])[LOG]
+    wide = quirky_campaign(SEED, as_utf16(LOG))[LOG]
     assert wide.startswith(b"\xff\xfe")
     assert wide.decode("utf-16").encode() == contents[LOG]
 
@@ -275,7 +274,7 @@ def test_quirks_change_their_file_and_the_manifest_agrees(contents: dict[str, by
 def test_a_quirk_of_a_file_that_is_not_there_is_refused() -> None:
     message = "a quirk names 'tension/x.csv', which the campaign does not hold"
     with pytest.raises(ConfigError, match=f"^{re.escape(message)}$"):
-        campaign_files(SEED, [cut_short("tension/x.csv")])
+        quirky_campaign(SEED, cut_short("tension/x.csv"))
 
 
 def test_every_part_keeps_to_its_own_folder() -> None:

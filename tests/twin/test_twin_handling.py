@@ -14,9 +14,9 @@ from deamat.core.records import Summary
 from deamat.core.register import read_register
 from deamat.core.technique import Context
 from deamat.techniques.handling import TECHNIQUE
-from deamat.twin.campaign import SEED, campaign_files
+from deamat.twin.campaign import SEED
 from deamat.twin.handling import handling_part, simulate_handling, true_handling_times
-from deamat.twin.quirks import Quirk, typed_otherwise
+from tests.twin.quirks import Quirk, quirky_campaign, typed_otherwise
 
 FILE = "handling/observations.csv"
 CONTEXT = Context(TECHNIQUE.config(), Machine(), {})
@@ -84,7 +84,7 @@ def test_every_row_says_that_it_is_synthetic() -> None:
 def _summary(quirk: Quirk) -> Summary:
     """The summary of Sylgard 184 (10:1), whose lines are the first fifteen rows."""
     register = read_register(
-        campaign_files(SEED, [quirk])[FILE], f"c/{FILE}", "c", "handling", TECHNIQUE.required, {},
+        quirky_campaign(SEED, quirk)[FILE], f"c/{FILE}", "c", "handling", TECHNIQUE.required, {},
         TECHNIQUE.register,
     )  # fmt: skip
     mine = [s for s in register.specimens if s.material == "sylgard-184-10to1"]

@@ -27,8 +27,8 @@ from deamat.twin.nanoindentation import (
     tip_of,
     true_modulus,
 )
-from deamat.twin.quirks import Quirk, as_utf16, cut_short, open_ended, rows_lost
 from deamat.twin.truth import document, materials, true_value
+from tests.twin.quirks import Quirk, as_utf16, cut_short, open_ended, quirky_campaign, rows_lost
 
 FILE = "nanoindentation/sylgard-182-20to1/synthetic-2.txt"
 
@@ -148,7 +148,7 @@ def test_each_quirk_is_read_right_or_rejected(quirk: Quirk, reason: str | None) 
             detect(plain).read(plain).columns["force_N"].tobytes()
         )
         return
-    quirky = RawFile(FILE, campaign_files(SEED, [quirk])[FILE])
+    quirky = RawFile(FILE, quirky_campaign(SEED, quirk)[FILE])
     with pytest.raises(RawFileError) as caught:
         detect(quirky).read(quirky)
     assert reason in str(caught.value)

@@ -15,17 +15,7 @@ from deamat.core.records import Recording
 from deamat.estimators.dielectric.impedance import loss_tangent
 from deamat.formats.detect import detect
 from deamat.formats.rawfile import RawFile
-from deamat.twin.campaign import SEED, campaign_files
-from deamat.twin.lcr_quirks import (
-    GREEK_MU,
-    MICRO_SIGN,
-    in_microfarad,
-    marked_out,
-    over_range_point,
-    sentinel_marked_ok,
-    with_units_row,
-    without_function,
-)
+from deamat.twin.campaign import SEED
 from deamat.twin.permittivity import (
     FUNCTIONS,
     METER,
@@ -36,8 +26,18 @@ from deamat.twin.permittivity import (
     simulate_permittivity,
     sweep_log,
 )
-from deamat.twin.quirks import Quirk, as_utf16, cut_short
 from deamat.twin.truth import materials, true_value
+from tests.twin.lcr_quirks import (
+    GREEK_MU,
+    MICRO_SIGN,
+    in_microfarad,
+    marked_out,
+    over_range_point,
+    sentinel_marked_ok,
+    with_units_row,
+    without_function,
+)
+from tests.twin.quirks import Quirk, as_utf16, cut_short, quirky_campaign
 
 LOG = "permittivity/sylgard-184-10to1/synthetic-2.log"
 CSV = f"permittivity/{TABLE}/synthetic-1.csv"
@@ -245,9 +245,9 @@ def test_utf_16_is_read_and_a_cut_file_is_not() -> None:
 
 def test_a_quirk_of_what_is_not_there_is_an_error() -> None:
     with pytest.raises(ConfigError, match="which the campaign does not hold"):
-        campaign_files(SEED, [without_function("permittivity/x.log")])
+        quirky_campaign(SEED, without_function("permittivity/x.log"))
     with pytest.raises(ConfigError, match=r"^a quirk names '3', which '.*' does not hold$"):
-        campaign_files(SEED, [marked_out(LOG, "3")])
+        quirky_campaign(SEED, marked_out(LOG, "3"))
 
 
 def test_the_meter_is_declared_as_the_configuration_declares_it() -> None:

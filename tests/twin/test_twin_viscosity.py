@@ -22,16 +22,7 @@ from deamat.formats.rawfile import RawFile
 from deamat.techniques import TECHNIQUES, viscosity
 from deamat.techniques.viscosity.config import ViscosityConfig
 from deamat.twin.campaign import SEED
-from deamat.twin.quirks import Quirk
 from deamat.twin.truth import true_viscosities
-from deamat.twin.viscometer_quirks import (
-    below_zero,
-    contradicting,
-    over_range,
-    rotor_misnoted,
-    without_dates,
-    wrong_unit,
-)
 from deamat.twin.viscosity import (
     BATCHES,
     ON_STRONGER_SPRING,
@@ -41,6 +32,15 @@ from deamat.twin.viscosity import (
     machine_of,
     simulate_viscosity,
     viscosity_part,
+)
+from tests.twin.quirks import Quirk
+from tests.twin.viscometer_quirks import (
+    below_zero,
+    contradicting,
+    over_range,
+    rotor_misnoted,
+    without_dates,
+    wrong_unit,
 )
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
-from deamat.twin.quirks import Quirk, altered
+from tests.twin.quirks import Quirk, altered
 
 _LINE = re.compile(r"^([^\t#]+\t\d+#[\d.]+ RPM) +\S+ +\S+ +(\S+)$")
 

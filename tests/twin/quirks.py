@@ -12,9 +12,21 @@ import io
 from collections.abc import Callable, Mapping
 
 from deamat.core.errors import ConfigError
-from deamat.twin.writers import register_csv
+from deamat.twin.campaign import campaign_files
+from deamat.twin.writers import manifest, register_csv
 
 Quirk = Callable[[Mapping[str, bytes]], Mapping[str, bytes]]
+
+_MANIFEST = "MANIFEST.sha256"
+
+
+def quirky_campaign(seed: int, *quirks: Quirk) -> dict[str, bytes]:
+    """Make all files of a campaign in memory, with quirks built in, in turn."""
+    contents: Mapping[str, bytes] = campaign_files(seed)
+    for quirk in quirks:
+        contents = quirk(contents)
+    written = {path: data for path, data in contents.items() if path != _MANIFEST}
+    return {**written, _MANIFEST: manifest(written)}
 
 
 def cut_short(path: str) -> Quirk:
@@ -55,7 +67,6 @@ def as_utf16(path: str) -> Quirk:
 
 
 def altered(path: str, change: Callable[[bytes], bytes]) -> Quirk:
-    """Make a quirk of what it does to the bytes of one file."""
     """Make a quirk that changes the bytes of one file."""
 
     def quirk(contents: Mapping[str, bytes]) -> Mapping[str, bytes]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from deamat.core.errors import ConfigError
-from deamat.twin.quirks import Quirk, altered
+from tests.twin.quirks import Quirk, altered
 
 _LIMIT_V, _HELD_ROWS = 20e3, 4
 _Table = list[list[float]]

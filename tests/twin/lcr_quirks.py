@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from deamat.core.errors import ConfigError
-from deamat.twin.quirks import Quirk, altered
+from tests.twin.quirks import Quirk, altered
 
 OVER_RANGE = "9.90000e+37"  # what SCPI instruments send for "over range"
 MICRO_SIGN, GREEK_MU = "\u00b5", "\u03bc"
