@@ -20,6 +20,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.polynomial.chebyshev import chebvander
 from numpy.typing import ArrayLike
 from scipy.special import digamma, gammaincc, gammaln, ndtri, polygamma, sici
 
@@ -34,8 +35,12 @@ Distribution = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 _DROP = 30.0  # nodes reach to where p(w) has fallen by exp(-30) = 1e-13
 _STEP = 0.4  # between nodes, of the narrowest feature: errors below 1e-9 with 3 failures
 _ROWS = 64  # samples at once
+_AT_ONCE = 32  # values summed at once: a block stays in the cache
 _SERIES_LIMIT = 64  # failures up to which the finite series is faster than the library
-_LOG_LARGEST = np.log(700.0)  # exp(-700) is the least that a double holds with all digits
+_LARGEST_SERIES = 700.0  # exp(-700) is the least that a double holds with all digits
+_MANY = 256  # values from which ln S0 is interpolated: summing them again for every question costs
+_DEGREE = 40  # of the interpolation; its last coefficients say whether that was enough
+_RESOLVED = 1e-13  # of ln S0, absolute; r times that is the error of ln p(w)
 _MOST_NODES = 200_000  # 0.1 s for one sample of 20
 _NEWTON_STEPS = 60
 _CONVERGED = 1e-6  # Newton squares it in the last step
@@ -52,6 +57,8 @@ class Conditional:
     width : standard deviation of w, by the curvature there, shape (m,)
     low, high : range of w outside which p(w) is below 1e-13 of its peak, shape (m,)
     log_sum, mean : ln S0 and S1/S0 at the mode, shape (m,)
+    log_sums : Chebyshev coefficients of ln S0 over `low` to `high`, shape (degree + 1, m); None
+        where summing is cheap or the degree does not resolve it
     """
 
     samples: LogSamples
@@ -61,6 +68,7 @@ class Conditional:
     high: FloatArray
     log_sum: FloatArray
     mean: FloatArray
+    log_sums: FloatArray | None
 
     def shape(self, level: float) -> Bounds:
         """Bounds on the shape that leave (1 - level)/2 on either side, shape (m,) each."""
@@ -175,7 +183,29 @@ def _locate(samples: LogSamples) -> Conditional:
     width = 1.0 / np.sqrt(r - 1.0 + r * k * k * variance)
     mode = np.log(k)
     low, high = (_edge(samples, mode, log_sum, sign * width) for sign in (-1.0, 1.0))
-    return Conditional(samples, mode, width, low, high, log_sum, mean)
+    series = _log_sum_series(samples, low, high)
+    return Conditional(samples, mode, width, low, high, log_sum, mean, series)
+
+
+def _log_sum_series(samples: LogSamples, low: FloatArray, high: FloatArray) -> FloatArray | None:
+    """Interpolate ln S0 over w in Chebyshev points of the first kind."""
+    if samples.log_ratio.shape[0] < _MANY:
+        return None
+    count = _DEGREE + 1
+    x = np.cos(np.pi * (np.arange(count) + 0.5) / count)
+    w = low[:, None] + (high - low)[:, None] * 0.5 * (1.0 + x)
+    coefficients = 2.0 / count * chebvander(x, _DEGREE).T @ _log_sums(samples, np.exp(w)).T
+    coefficients[0] /= 2.0
+    return coefficients if np.abs(coefficients[-3:]).max() < _RESOLVED else None
+
+
+def _log_sums(samples: LogSamples, shape: FloatArray) -> FloatArray:
+    """Return ln S0 at the shapes of each sample, shape (m, N)."""
+    total = np.zeros_like(shape)
+    for start in range(0, samples.log_ratio.shape[0], _AT_ONCE):
+        z = samples.log_ratio[start : start + _AT_ONCE]
+        total += np.exp(shape[:, None, :] * z.T[:, :, None]).sum(axis=1)
+    return np.log(total)
 
 
 def _edge(
@@ -211,10 +241,10 @@ def _nodes(given: Conditional, feature: FloatArray) -> _Nodes:
     place = (np.arange(count) + 0.5) / count
     w = given.low[:, None] + (given.high - given.low)[:, None] * place
     shape = np.exp(w)
-    total = np.zeros_like(w)
-    for z in samples.log_ratio:
-        total += np.exp(shape * z[:, None])
-    log_sum = np.log(total)
+    if given.log_sums is None:
+        log_sum = _log_sums(samples, shape)
+    else:
+        log_sum = (chebvander(2.0 * place - 1.0, _DEGREE) @ given.log_sums).T
     r = samples.failures[:, None]
     log_density = (r - 1.0) * w + r * (shape * samples.mean_failed[:, None] - log_sum)
     weight = np.exp(log_density - log_density.max(axis=1, keepdims=True))
@@ -242,11 +272,13 @@ def _shape_distribution(nodes: _Nodes) -> Distribution:
 
 def _gamma_terms(nodes: _Nodes, r: FloatArray, shift: FloatArray) -> Bounds:
     """Q(r, u) and the density u^r exp(-u) / Gamma(r) of ln u, for ln u = ln S0 + shift."""
-    log_u = np.minimum(nodes.log_sum + shift, _LOG_LARGEST)
+    # far beyond r nothing is left of Q, and exp must not overflow
+    log_u = np.minimum(nodes.log_sum + shift, np.log(_LARGEST_SERIES + 10.0 * r)[:, None])
     u = np.exp(log_u)
     density = np.exp(r[:, None] * log_u - u - gammaln(r)[:, None])
     if r[0] > _SERIES_LIMIT or (r != r[0]).any():
         return gammaincc(r[:, None], u), density
+    u = np.minimum(u, _LARGEST_SERIES)
     series = np.ones_like(u)  # Q(r, u) = exp(-u) sum of u^j / j! over j < r, by Horner
     for j in range(int(r[0]) - 1, 0, -1):
         series *= u

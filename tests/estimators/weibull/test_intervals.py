@@ -240,3 +240,26 @@ def test_a_batch_with_a_refused_sample_is_refused() -> None:
     assert str(caught.value) == (
         "1 of 10 samples cannot be fitted (the first is sample 8); weibull.fit says why"
     )
+
+
+@pytest.mark.parametrize("n", [300, 700, 10_000])
+def test_many_failures_get_the_intervals_of_direct_summation(n: int) -> None:
+    x, censored = simulated(n, 1, seed=51)
+    values, failed = x[0], ~censored[0]
+    given = one(values, failed)
+    z = np.log(values / values.max())
+    w = given.mode + given.width * np.linspace(-9.0, 9.0, 1201)
+    k = np.exp(w)
+    log_sum = np.log([np.exp(one_k * z).sum() for one_k in k])
+    log_density = (n - 1) * w + n * (k * z.mean() - log_sum)
+    weight = np.exp(log_density - log_density.max())
+    weight /= weight.sum()
+    for a in (0.0, A10, A1):
+        for bound, tail in zip(given.quantile(a, 0.95), (0.025, 0.975), strict=True):
+            t = np.log(bound / values.max())
+            assert weight @ gammaincc(n, np.exp(log_sum + a - k * t)) == pytest.approx(
+                tail, rel=1e-8
+            )
+    for bound, tail in zip(given.shape(0.95), (0.025, 0.975), strict=True):
+        cumulative = np.cumsum(weight) - 0.5 * weight
+        assert np.interp(np.log(bound), w, cumulative) == pytest.approx(tail, abs=1e-5)
