@@ -6,12 +6,12 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Callable
 from typing import Any
 
 from deamat.core.errors import ConfigError
 from deamat.run.folders import Folders, look
+from deamat.run.host import cpu_count
 from deamat.run.published import intact
 from deamat.run.state import State
 
@@ -50,9 +50,8 @@ def run_all(
             return {**document, "nothing_to_do": True}
         from deamat.run.process import process  # numpy, pydantic: only when there is work
 
-        cores = len(os.sched_getaffinity(0))
         document = process(
-            folders, state, seen, workers=workers or cores, progress=progress, verify=verify
+            folders, state, seen, workers=workers or cpu_count(), progress=progress, verify=verify
         )
         state.note("places", places)
         state.note("document", json.dumps(document))

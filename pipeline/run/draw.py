@@ -78,9 +78,8 @@ def _is_modulus(key: str) -> bool:
 
 def draw_all(jobs: Sequence[FigureJob], folder: Path, bench: Bench) -> None:
     """Draw figures into a folder."""
-    executor = bench.pool(len(jobs))
-    draw = partial(draw_one, folder)
-    for done, _ in enumerate(executor.map(draw, jobs) if executor else map(draw, jobs), start=1):
+    drawn = bench.workers.map(partial(draw_one, folder), jobs)
+    for done, _ in enumerate(drawn, start=1):
         bench.progress("figures", done, len(jobs))
 
 

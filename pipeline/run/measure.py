@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from graphlib import TopologicalSorter
 from typing import TypeVar
@@ -20,7 +19,8 @@ from deamat.formats import FORMATS
 from deamat.run.book import STALE, Book, digest, key_of
 from deamat.run.folders import Folders
 from deamat.run.survey import Survey
-from deamat.run.work import FILES_PER_TASK, Reduced, Task, reduce_all
+from deamat.run.work import FILES_PER_TASK, Reduced, Task, reduce_one
+from deamat.run.workers import Workers
 
 # Raise it when the driver itself may give another answer from the same file, room and settings.
 SPINE_VERSION = 1
@@ -29,7 +29,6 @@ _READERS = {form.name: form.version for form in FORMATS}
 
 E = TypeVar("E", PropertyRecord, Law)
 Progress = Callable[[str, int, int], None]
-Chunks = Callable[[Sequence[Sequence[Task]]], Iterable[list[Reduced]]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +74,7 @@ class Bench:
     config: Config
     surveys: Sequence[Survey]
     book: Book
-    pool: Callable[[int], Executor | None]
+    workers: Workers
     progress: Progress
     dry: bool
     records: dict[tuple[str, str], list[PropertyRecord]] = field(default_factory=dict)
@@ -242,12 +241,9 @@ def _needed(key: str, specimen: Specimen, records: Sequence[PropertyRecord]) -> 
 
 
 def _run(technique: Technique, tasks: Sequence[Task], bench: Bench) -> Iterator[Reduced]:
-    """Work through the tasks in chunks, in this process where there are few."""
-    chunks = [tasks[i : i + FILES_PER_TASK] for i in range(0, len(tasks), FILES_PER_TASK)]
-    executor = bench.pool(len(chunks))
-    done = 0
+    """Work through the tasks, in this process where they are few."""
     bench.progress(technique.key, 0, len(tasks))
-    for results in executor.map(reduce_all, chunks) if executor else map(reduce_all, chunks):
-        done += len(results)
+    results = bench.workers.map(reduce_one, tasks, FILES_PER_TASK)
+    for done, reduced in enumerate(results, start=1):
         bench.progress(technique.key, done, len(tasks))
-        yield from results
+        yield reduced

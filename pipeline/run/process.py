@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Mapping
-from concurrent.futures import Executor, ProcessPoolExecutor
-from contextlib import ExitStack
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -24,6 +22,7 @@ from deamat.run.published import listing
 from deamat.run.release import Release
 from deamat.run.state import State
 from deamat.run.survey import Survey, survey
+from deamat.run.workers import Workers
 from deamat.techniques import TECHNIQUES
 
 
@@ -67,8 +66,7 @@ def process(
     config = load_config(folders.config, {t.key: t.config for t in TECHNIQUES.values()})
     surveys, left_alone = look_at_raw(folders, seen, hashes, config)
     book = Book(state)
-    with ExitStack() as stack:
-        pool = _pool(stack, workers)
+    with Workers(workers) as pool:
         bench = Bench(folders, config, surveys, book, pool, progress, dry)
         groups: list[Group] = []
         measured: list[Measured] = []
@@ -115,20 +113,6 @@ def look_at_raw(
             )
         )
     return surveys, left_alone
-
-
-def _pool(stack: ExitStack, workers: int) -> Callable[[int], Executor | None]:
-    """Give the one executor of the run, started when the first work worth it comes."""
-    started: list[Executor] = []
-
-    def get(chunks: int) -> Executor | None:
-        if workers < 2 or chunks < 2:
-            return None
-        if not started:
-            started.append(stack.enter_context(ProcessPoolExecutor(workers)))
-        return started[0]
-
-    return get
 
 
 def _account(surveys: list[Survey], measured: list[Measured]) -> list[FileEntry]:

@@ -5,16 +5,15 @@ It is a cache: deleting it costs time, never a result. Standard library only: th
 
 from __future__ import annotations
 
-import fcntl
 import json
 import sqlite3
 from collections.abc import Mapping
 from pathlib import Path
 from types import TracebackType
-from typing import IO
 
 from deamat.core.errors import ConfigError
 from deamat.run.folders import Stat
+from deamat.run.host import Lock
 
 _SCHEMA = """
 CREATE TABLE IF NOT EXISTS input(path TEXT PRIMARY KEY, size INT, mtime_ns INT, sha256 TEXT);
@@ -30,11 +29,9 @@ class State:
 
     def __init__(self, processed: Path) -> None:
         processed.mkdir(parents=True, exist_ok=True)
-        self._lock: IO[str] = (processed / ".lock").open("w")
         try:
-            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            self._lock = Lock(processed / ".lock")
         except BlockingIOError as error:
-            self._lock.close()
             raise ConfigError(f"another run is working in {processed}; wait for it") from error
         path = processed / "state.sqlite"
         self.db = self._open(path)
@@ -71,7 +68,7 @@ class State:
         else:  # what was noted of outputs that were never published must not be believed
             self.db.rollback()
         self.db.close()
-        self._lock.close()
+        self._lock.release()
 
     def inputs(self) -> dict[str, tuple[Stat, str]]:
         """Path to what was seen and hashed last time."""

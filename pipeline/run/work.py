@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -45,11 +45,6 @@ class Reduced:
     measurement: Measurement | None
     error: RawFileError | None
     reader: str
-
-
-def reduce_all(tasks: Sequence[Task]) -> list[Reduced]:
-    """Work through a chunk of tasks."""
-    return [reduce_one(task) for task in tasks]
 
 
 def reduce_one(task: Task) -> Reduced:
