@@ -79,13 +79,14 @@ def ours(form: type[RawFile] = _Unhashed) -> Contender:
     """Detect, read with all its strictness, make the curve and fit the slope of the window."""
     # By name, so that the rivals can be timed where these floors do not import.
     detect: Callable[[RawFile], Format] = importlib.import_module("deamat.formats.detect").detect
-    curves = importlib.import_module("deamat.core.stress_strain")
+    curves = importlib.import_module("deamat.techniques.shared.stress_strain")
+    geometry = importlib.import_module("deamat.techniques.shared.geometry")
     estimators = importlib.import_module("deamat.estimators.curves.stress_strain")
     fit_line = importlib.import_module("deamat.estimators.curves.slope").fit_line
     config = importlib.import_module("deamat.techniques").TECHNIQUES["compression"].config()
     machine = Machine()
     height = Quantity(HEIGHT_m, "m", 1e-5, 1e-5)
-    section = curves.circular_section({"diameter_m": Quantity(DIAMETER_m, "m", 1e-5, 1e-5)})
+    section = geometry.circular_section({"diameter_m": Quantity(DIAMETER_m, "m", 1e-5, 1e-5)})
 
     def fit(curve: Curve) -> Fit:
         raw = form(curve.path.name, whole_file(curve.path))

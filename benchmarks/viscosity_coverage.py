@@ -57,8 +57,8 @@ def one(task: tuple[int, str]) -> Counter[tuple[str, str, bool]]:
     truth = true_viscosities()[material]
     runs = [in_memory(simulate_viscosity(seed, material, b)) for b in range(1, BATCHES + 1)]
     context = replace(CONTEXT, machine=machine_of(material))
-    measurements = [viscosity.reduce(*run, context) for run in runs]
-    summary = viscosity.summarise(measurements, CONTEXT)
+    measurements = [viscosity.TECHNIQUE.reduce(*run, context) for run in runs]
+    summary = viscosity.TECHNIQUE.summarise(measurements, CONTEXT)
     counts: Counter[tuple[str, str, bool]] = Counter()
     for record in summary.records:
         low, high = record.ci95

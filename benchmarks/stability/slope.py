@@ -14,7 +14,8 @@ from deamat.core.quantity import Quantity
 from deamat.core.records import Recording, Source, Specimen
 from deamat.core.technique import Context
 from deamat.estimators.mean import coverage_factor
-from deamat.techniques.compression import COMPENSATED, MODULUS, TECHNIQUE
+from deamat.techniques.compression import TECHNIQUE
+from deamat.techniques.compression.config import COMPENSATED, MODULUS
 
 Curve = tuple[FloatArray, FloatArray]
 _E = 1e6  # Pa

@@ -10,7 +10,7 @@ import pytest
 from deamat.core.records import Summary
 from deamat.techniques import viscosity
 from deamat.techniques.viscosity.config import ViscosityConfig
-from tests.techniques.runs import CONTEXT, HOUR, newtonian, reduce
+from tests.techniques.viscosity.runs import CONTEXT, HOUR, newtonian, reduce
 
 TIMES = np.arange(0.25, 13.01, 0.25) * HOUR
 # Sylgard 184 (10:1), Sikulskyi et al. 2022, Table 2.
@@ -29,7 +29,7 @@ def test_a_law_says_which_order_was_taken_and_what_the_others_scored(
     rng = np.random.default_rng(5)
     scattered = QUARTIC * np.exp(noise * rng.normal(size=len(TIMES)))
     measured = reduce(newtonian(scattered, TIMES, speed_rpm=1.5), context)
-    law = viscosity.summarise([measured], context).laws[0]
+    law = viscosity.TECHNIQUE.summarise([measured], context).laws[0]
     degree = len(law.coefficients) - 1
     assert degree in degrees
     choice = str(law.diagnostics["choice"])
@@ -43,7 +43,9 @@ def quartic_within(answer_within: float | None) -> Summary:
         torque_window=(0.0, 1.0), laws=("polynomial",), answer_within=answer_within
     )
     context = replace(CONTEXT, config=config)
-    return viscosity.summarise([reduce(newtonian(QUARTIC, TIMES, speed_rpm=1.5), context)], context)
+    return viscosity.TECHNIQUE.summarise(
+        [reduce(newtonian(QUARTIC, TIMES, speed_rpm=1.5), context)], context
+    )
 
 
 @pytest.mark.parametrize(("answer_within", "degree"), [(None, 4), (0.003, 4), (0.05, 3)])

@@ -72,14 +72,15 @@ def read(path: str, files: Mapping[str, bytes] = FILES) -> Recording:
 
 def spoilt(path: str, quirk: Quirk) -> Measurement:
     files = quirk(FILES)
-    return viscosity.reduce(register(files)[path], read(path, files), CONTEXT)
+    return viscosity.TECHNIQUE.reduce(register(files)[path], read(path, files), CONTEXT)
 
 
 @pytest.fixture(scope="module")
 def measurements() -> dict[str, Measurement]:
     """Every run of the committed seed, reduced from its file."""
     return {
-        path: viscosity.reduce(row, read(path), context_of(row)) for path, row in register().items()
+        path: viscosity.TECHNIQUE.reduce(row, read(path), context_of(row))
+        for path, row in register().items()
     }
 
 
@@ -89,7 +90,7 @@ def summaries(measurements: dict[str, Measurement]) -> dict[str, Summary]:
     runs: dict[str, list[Measurement]] = {}
     for measured in measurements.values():
         runs.setdefault(measured.specimen.material, []).append(measured)
-    return {material: viscosity.summarise(of, CONTEXT) for material, of in runs.items()}
+    return {material: viscosity.TECHNIQUE.summarise(of, CONTEXT) for material, of in runs.items()}
 
 
 def law(summary: Summary, key: str = "viscosity") -> Law:
@@ -228,7 +229,7 @@ def test_the_configuration_declares_the_viscometers_that_the_twin_simulates() ->
 
 def test_the_stronger_spring_taken_for_an_ndj_8s_is_refused() -> None:
     path = f"viscosity/{ON_STRONGER_SPRING}/synthetic-1.log"
-    measured = viscosity.reduce(register()[path], read(path), CONTEXT)
+    measured = viscosity.TECHNIQUE.reduce(register()[path], read(path), CONTEXT)
     assert measured.values == ()
     assert measured.refusals[0].reason.startswith(
         "viscosity, torque and speed contradict each other in "
@@ -253,12 +254,12 @@ def test_single_faults_are_left_out_by_line(quirk: Quirk, said: str) -> None:
     ]
     assert any(flag.startswith(said) for flag in flags)
     assert 20 not in measured.curve["line"]
-    plain = viscosity.reduce(register()[LOG], read(LOG), CONTEXT)
+    plain = viscosity.TECHNIQUE.reduce(register()[LOG], read(LOG), CONTEXT)
     assert len(measured.curve["line"]) == len(plain.curve["line"]) - 1
 
 
 def test_dates_that_are_missing_change_nothing() -> None:
-    plain = viscosity.reduce(register()[LOG], read(LOG), CONTEXT)
+    plain = viscosity.TECHNIQUE.reduce(register()[LOG], read(LOG), CONTEXT)
     undated = spoilt(LOG, without_dates(LOG))
     assert undated.curve["time_s"] == pytest.approx(plain.curve["time_s"])
     assert [v.quantity for v in undated.values] == [v.quantity for v in plain.values]
@@ -276,6 +277,9 @@ def test_a_wrong_rotor_and_a_wrong_unit_are_refused() -> None:
 def test_a_worse_calibration_widens_the_shared_part_alone() -> None:
     path = CSV
     worse = replace(CONTEXT, machine=VISCOMETER.model_copy(update={"u_torque_calibration": 0.01}))
-    a, b = (viscosity.reduce(register()[path], read(path), c).values[1] for c in (CONTEXT, worse))
+    a, b = (
+        viscosity.TECHNIQUE.reduce(register()[path], read(path), c).values[1]
+        for c in (CONTEXT, worse)
+    )
     assert b.quantity.u_shared == pytest.approx(4.0 * a.quantity.u_shared, rel=0.05)
     assert b.quantity.u_independent == pytest.approx(a.quantity.u_independent, rel=0.05)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from deamat.core.technique import Technique
 from deamat.techniques.breakdown.config import VERSION, YIELDS, BreakdownConfig
-from deamat.techniques.breakdown.figure import draw
-from deamat.techniques.breakdown.specimen import reduce
-from deamat.techniques.breakdown.summary import summarise
+from deamat.techniques.breakdown.figure import figure
+from deamat.techniques.breakdown.reduce import reduce
+from deamat.techniques.breakdown.summarise import summarise
 
 TECHNIQUE = Technique(
     key="breakdown",
@@ -25,7 +25,7 @@ TECHNIQUE = Technique(
     ),
     reduce=reduce,
     summarise=summarise,
-    figure=draw,
+    figure=figure,
 )
 
 __all__ = ["TECHNIQUE", "BreakdownConfig"]

@@ -13,7 +13,7 @@ from deamat.core.records import Measurement, Summary
 from deamat.core.units import from_si
 from deamat.estimators.weibull.fit import fit, quantile
 from deamat.estimators.weibull.plot import confidence_band, plotting_positions, weibull_axis
-from deamat.techniques.breakdown.summary import Sample, samples
+from deamat.techniques.breakdown.summarise import Sample, samples
 
 _PERCENT = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 80.0, 95.0, 99.0)
 _FOOT = float(weibull_axis(0.01))
@@ -21,7 +21,7 @@ _TOP = float(weibull_axis(0.995))
 _STEPS = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0)  # of the ticks in a decade
 
 
-def draw(axes: Any, measurements: Sequence[Measurement], _summary: Summary) -> None:
+def figure(axes: Any, measurements: Sequence[Measurement], _summary: Summary) -> None:
     """Draw ln(-ln(1 - F)) over the field: specimens, fitted line, 95 % band of its quantiles.
 
     Specimens that did not break have no place of their own on the upright axis: they are marked at

@@ -11,6 +11,7 @@ from deamat.core.instruments import Declared
 PERMITTIVITY = "relative_permittivity"
 LOSS = "loss_tangent"
 MODULUS = "compressive_modulus"
+YIELDS = (PERMITTIVITY, LOSS)
 VERSION = 1
 
 

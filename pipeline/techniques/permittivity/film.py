@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from deamat.core.errors import FitRefused
 from deamat.core.quantity import Contribution, Quantity
 from deamat.core.records import Flag
-from deamat.core.stress_strain import register_length, scale_budget
 from deamat.core.technique import Context
 from deamat.core.units import from_si
 from deamat.estimators.dielectric.squeeze import (
@@ -18,6 +17,7 @@ from deamat.estimators.dielectric.squeeze import (
     sticking_modulus,
 )
 from deamat.techniques.permittivity.config import MODULUS, PermittivityConfig
+from deamat.techniques.shared.geometry import register_length, scale_budget
 
 
 @dataclass(frozen=True, slots=True)

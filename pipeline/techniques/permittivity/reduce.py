@@ -26,10 +26,10 @@ from deamat.estimators.dielectric.sweep import (
     series_resistance,
     slope_per_decade,
 )
-from deamat.techniques._stress_strain import nothing_measured, recorded, refusal, relative_lines
 from deamat.techniques.permittivity.config import LOSS, PERMITTIVITY, PermittivityConfig
 from deamat.techniques.permittivity.film import Film, film_flags, film_of
 from deamat.techniques.permittivity.spectrum import Spectrum, permittivity_of, spectrum_of
+from deamat.techniques.shared.outcome import nothing_measured, recorded, refusal, relative_lines
 
 _LIMIT_TO_SIGMA = math.sqrt(3.0)  # a limit without further knowledge: rectangular, GUM 4.3.7
 _RESISTANCE_TOLD = 3.0  # standard errors from which a series resistance is told from noise

@@ -9,6 +9,17 @@ from pydantic import Field, model_validator
 
 from deamat.core.instruments import Declared
 
+VISCOSITY = "viscosity"
+DOUBLING = "viscosity_doubling_time"
+LIMIT = "time_to_viscosity_limit"
+CONSISTENCY = "flow_consistency"
+CONSISTENCY_WIDE_CUP = "flow_consistency_wide_cup"
+INDEX = "flow_index"
+YIELDS = (VISCOSITY, DOUBLING, LIMIT, CONSISTENCY, INDEX, CONSISTENCY_WIDE_CUP)
+# Refused by name where a run gives nothing; the others are only asked of some liquids.
+ALWAYS = (VISCOSITY, DOUBLING)
+VERSION = 2
+
 
 class RateFactor(Declared):
     """Nominal shear rate per speed of one rotor, and where it is from."""

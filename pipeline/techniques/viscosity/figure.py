@@ -10,14 +10,14 @@ import numpy as np
 from deamat.core.arrays import FloatArray
 from deamat.core.records import Law, Measurement, Summary
 from deamat.core.units import from_si
-from deamat.techniques.viscosity.values import VISCOSITY
+from deamat.techniques.viscosity.config import VISCOSITY
 
 _POINTS = 200
 _HOURS_FROM_S = 7200.0
 _DECADES = 100.0
 
 
-def draw(axes: Any, measurements: Sequence[Measurement], summary: Summary) -> None:
+def figure(axes: Any, measurements: Sequence[Measurement], summary: Summary) -> None:
     """Draw the readings of every run, also those not fitted, and the law over its range.
 
     A cure that spans decades is drawn in logarithms, for its law ends where the curve takes off.

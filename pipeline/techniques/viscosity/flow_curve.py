@@ -16,7 +16,7 @@ from deamat.estimators.least_squares.linear import LinearFit, fit_linear
 from deamat.estimators.selection import choose
 from deamat.formats.flow_samples import SEPARATOR
 from deamat.formats.viscometer import lines_text
-from deamat.techniques.viscosity.values import CONSISTENCY, INDEX, VISCOSITY
+from deamat.techniques.viscosity.config import CONSISTENCY, INDEX, VISCOSITY
 
 _MIN_READINGS = 5
 _TEMPERATURE_SPREAD_K = 1.0

@@ -15,11 +15,10 @@ from deamat.core.laws import FORMS, POLYNOMIAL, POWER_LAW_FLUID
 from deamat.core.properties import property_key
 from deamat.core.records import Law, Origin, Specimen
 from deamat.estimators.mean import coverage_factor
-from deamat.techniques.viscosity.config import ViscosityConfig
+from deamat.techniques.viscosity.config import CONSISTENCY, INDEX, VISCOSITY, ViscosityConfig
 from deamat.techniques.viscosity.fluid import fit_fluid, is_swept
 from deamat.techniques.viscosity.newtonian import fit_newtonian
 from deamat.techniques.viscosity.time_law import TimeLaw
-from deamat.techniques.viscosity.values import CONSISTENCY, INDEX, VISCOSITY
 from deamat.techniques.viscosity.window import Windowed
 
 _CHECKED_TIMES = 5

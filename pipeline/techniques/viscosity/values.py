@@ -12,16 +12,17 @@ from deamat.core.errors import FitRefused, OutOfRange
 from deamat.core.properties import property_key
 from deamat.core.quantity import Contribution, Quantity
 from deamat.core.records import Condition, Flag, MeasuredValue
-from deamat.techniques.viscosity.config import ViscosityConfig
+from deamat.techniques.viscosity.config import (
+    CONSISTENCY,
+    CONSISTENCY_WIDE_CUP,
+    DOUBLING,
+    INDEX,
+    LIMIT,
+    VISCOSITY,
+    ViscosityConfig,
+)
 from deamat.techniques.viscosity.time_law import TimeLaw
 from deamat.techniques.viscosity.window import Windowed
-
-VISCOSITY = "viscosity"
-DOUBLING = "viscosity_doubling_time"
-LIMIT = "time_to_viscosity_limit"
-CONSISTENCY = "flow_consistency"
-CONSISTENCY_WIDE_CUP = "flow_consistency_wide_cup"
-INDEX = "flow_index"
 
 # A value and its derivatives by the coefficients of the law.
 Answer = Callable[[], tuple[float, FloatArray]]

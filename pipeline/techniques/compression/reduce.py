@@ -1,0 +1,205 @@
+"""One cylinder: its modulus as the slope over the first strain, plain and from the toe on."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
+from deamat.core.quantity import Contribution
+from deamat.core.records import (
+    Condition,
+    Detail,
+    Flag,
+    MeasuredValue,
+    Measurement,
+    Recording,
+    Refusal,
+    Specimen,
+)
+from deamat.core.technique import Context
+from deamat.estimators.curves.slope import Line, curvature
+from deamat.estimators.curves.stress_strain import (
+    MISSABLE,
+    Bins,
+    bin_slopes,
+    loading_branch,
+    window,
+    zero_of_tangent,
+)
+from deamat.techniques.compression.config import COMPENSATED, MODULUS, YIELDS, CompressionConfig
+from deamat.techniques.shared.geometry import circular_section, register_length
+from deamat.techniques.shared.modulus import (
+    conditions_of_test,
+    flags_of_loading,
+    modulus,
+    percent,
+    rising_line,
+)
+from deamat.techniques.shared.outcome import nothing_measured, recorded, refusal
+from deamat.techniques.shared.stress_strain import StressStrain, disagreement, stress_strain
+
+
+def reduce(specimen: Specimen, recording: Recording | None, context: Context) -> Measurement:
+    r"""Reduce one cylinder to its modulus, $Y_c = d\sigma/d\varepsilon$ over the window.
+
+    Ordinary least squares with an intercept, on the first loading only. The slope against strain
+    counted from the toe's tangent is a value of its own and never takes the plain one's place.
+
+    Parameters
+    ----------
+    specimen : with `diameter_m` and `height_m`; `speed_m_per_s` gives the condition `rate_per_s`
+    recording : see `shared.stress_strain.stress_strain`
+    context : with a `CompressionConfig`
+
+    Source: ASTM D575 for the test, ASTM D638 annex A1 for the toe.
+    """
+    config: CompressionConfig = context.config
+    try:
+        file = recorded(recording)
+        height = register_length(specimen.numbers, "height_m")
+        section = circular_section(specimen.numbers)
+        curve = stress_strain(file, section, height, "height", context.machine)
+    except FitRefused as error:
+        return nothing_measured(specimen, YIELDS, error, recording)
+    branch = loading_branch(curve.nominal_strain)
+    loading = _Loading(
+        curve,
+        curve.nominal_strain[:branch],
+        curve.nominal_stress_Pa[:branch],
+        file,
+        conditions_of_test(specimen, config.window, height),
+        flags_of_loading(file, curve, branch),
+    )
+    values: list[MeasuredValue] = []
+    refusals: list[Refusal] = []
+    try:
+        plain, bins = _plain(loading, config)
+        values.append(plain)
+    except FitRefused as error:
+        refusals += [refusal(specimen, k, error, loading.conditions) for k in YIELDS]
+    else:
+        try:
+            values.append(_compensated(loading, bins, config))
+        except FitRefused as error:
+            refusals.append(refusal(specimen, COMPENSATED, error, loading.conditions))
+    return Measurement(
+        specimen,
+        tuple(values),
+        tuple(refusals),
+        {"nominal_strain": loading.strain, "nominal_stress_Pa": loading.stress_Pa},
+        file.source,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Loading:
+    """The first loading of a specimen, with what both of its moduli need."""
+
+    curve: StressStrain
+    strain: FloatArray
+    stress_Pa: FloatArray
+    recording: Recording
+    conditions: Mapping[str, Condition]
+    flags: tuple[Flag, ...]
+
+
+def _plain(loading: _Loading, config: CompressionConfig) -> tuple[MeasuredValue, Bins]:
+    low, high = config.window
+    inside = window(loading.strain, low, high, config.min_samples, config.unloading_tolerance)
+    x, y = loading.strain[inside], loading.stress_Pa[inside]
+    line = rising_line(x, y, config.min_samples)
+    bins = bin_slopes(x, y, low, high, config.toe_bin)
+    value = modulus(
+        MODULUS,
+        line,
+        loading.curve,
+        inside,
+        loading.recording,
+        method=f"OLS slope with intercept over {percent(config.window)} nominal strain",
+        conditions=loading.conditions,
+        flags=loading.flags
+        + disagreement(loading.curve, inside, config.own_columns_tolerance)
+        + _toe_flags(line, bins, config),
+        diagnostics=_bin_diagnostics(bins, config.toe_bin),
+    )
+    return value, bins
+
+
+def _compensated(loading: _Loading, bins: Bins, config: CompressionConfig) -> MeasuredValue:
+    """Slope over the same range of strain, counted from where the steepest tangent meets zero."""
+    low, high = config.window
+    zero = zero_of_tangent(bins)
+    if zero < -MISSABLE * (high - low):
+        raise FitRefused(
+            f"the steepest tangent meets zero stress at {100 * zero:.3g} % strain, before the test "
+            "began: that is a preload, not a toe; zero the force before contact",
+            {"zero_strain": zero},
+        )
+    inside = window(
+        loading.strain, zero + low, zero + high, config.min_samples, config.unloading_tolerance
+    )
+    x, y = loading.strain[inside], loading.stress_Pa[inside]
+    line = rising_line(x, y, config.min_samples)
+    # where the curve bends, the slope goes with the zero of strain
+    bend = abs(curvature(x, y))
+    # the tangent may lie anywhere in its bin
+    u_zero = bend * config.toe_bin / math.sqrt(12.0)
+    # the first load may rest on the specimen, or be that of a cell which nobody zeroed
+    u_preload = bend * abs(float(loading.stress_Pa[0])) / line.slope / math.sqrt(3.0)
+    return modulus(
+        COMPENSATED,
+        line,
+        loading.curve,
+        inside,
+        loading.recording,
+        method=f"OLS slope over {percent(config.window)} of nominal strain counted from the zero "
+        f"of the tangent to the steepest {100 * config.toe_bin:g} % of the window",
+        conditions=loading.conditions,
+        flags=loading.flags,
+        diagnostics={"zero_strain": zero},
+        further=(
+            Contribution("zero of the toe's tangent", u_zero, shared=False),
+            Contribution("load before the test: on the specimen or not", u_preload, shared=True),
+        ),
+    )
+
+
+def _toe_flags(line: Line, bins: Bins, config: CompressionConfig) -> tuple[Flag, ...]:
+    """Compare the first bin with the steepest, and the line's start with zero stress."""
+    flags: tuple[Flag, ...] = ()
+    low, high = config.window
+    first = bins.slope[0]
+    steepest = math.nan if math.isnan(first) else bins.slope[bins.steepest]
+    if first < config.toe_flag_ratio * steepest:
+        touching = first >= config.contact_flag_ratio * steepest
+        end, start = low + config.toe_bin, low + bins.steepest * config.toe_bin
+        flags += (
+            Flag(
+                "toe" if touching else "contact",
+                f"slope {first / 1e3:.4g} kPa up to {100 * end:.3g} % strain, "
+                f"{steepest / 1e3:.4g} kPa from {100 * start:.3g} %"
+                + ("" if touching else ": the plates hardly touched at first"),
+            ),
+        )
+    rise = line.slope * (high - low)
+    if line.intercept > config.preload_flag_ratio * rise:
+        flags += (
+            Flag(
+                "preload",
+                f"the line meets zero strain at {line.intercept / 1e3:.3g} kPa, "
+                f"{100 * line.intercept / rise:.2g} % of its rise over the window",
+            ),
+        )
+    return flags
+
+
+def _bin_diagnostics(bins: Bins, width: float) -> dict[str, Detail]:
+    slopes: dict[str, Detail] = {
+        f"slope_bin_{i + 1}_Pa": slope
+        for i, slope in enumerate(bins.slope)
+        if not math.isnan(slope)
+    }
+    return {**slopes, "bin_width": width}

@@ -1,0 +1,1 @@
+"""What several rooms share; a room imports it, it imports no room."""

@@ -1,0 +1,149 @@
+"""A modulus: the slope of a stress-strain curve over a window, its budget and its flags."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
+from deamat.core.quantity import Contribution, Quantity
+from deamat.core.records import Condition, Flag, MeasuredValue, Recording, Specimen
+from deamat.estimators.curves.slope import FEW_INDEPENDENT, Line, fit_line, outlying
+from deamat.estimators.curves.stress_strain import reloads
+from deamat.techniques.shared.outcome import line_span, relative_lines
+from deamat.techniques.shared.stress_strain import IndexArray, StressStrain
+
+
+def conditions_of_test(
+    specimen: Specimen, window: tuple[float, float] | None, length: Quantity
+) -> dict[str, Condition]:
+    """Give what the test itself fixes: the window, and speed over length as nominal strain rate."""
+    conditions: dict[str, Condition] = {}
+    if window is not None:
+        conditions["window"] = window
+    if "speed_m_per_s" in specimen.numbers:
+        rate = abs(specimen.numbers["speed_m_per_s"].value) / length.value
+        conditions["rate_per_s"] = float(f"{rate:.6g}")
+    return conditions
+
+
+def flags_of_loading(recording: Recording, curve: StressStrain, branch: int) -> tuple[Flag, ...]:
+    """Pass on what the reader noticed, and flag a specimen that was loaded more than once."""
+    if not reloads(curve.nominal_strain, branch):
+        return recording.flags
+    several = Flag("several-loadings", f"only the first, samples 1 to {branch}, was used")
+    return (*recording.flags, several)
+
+
+def percent(window: tuple[float, float]) -> str:
+    """Write a window of strain as text: `0-5 %`."""
+    return f"{100 * window[0]:g}-{100 * window[1]:g} %"
+
+
+def rising_line(strain: FloatArray, stress_Pa: FloatArray, min_samples: int) -> Line:
+    """Fit the line of a window; a specimen under load answers with a positive slope.
+
+    Raises
+    ------
+    FitRefused : the slope is zero or negative
+    """
+    line = fit_line(strain, stress_Pa)
+    if not line.slope > 0.0:
+        raise FitRefused(
+            f"the slope of the {line.n} samples in the window ({min_samples} are needed) is "
+            f"{line.slope:.4g} Pa, not positive; check the contact, the signs and the zero of the "
+            "displacement, or use a smaller load cell",
+            {"samples": line.n, "samples_needed": min_samples, "slope_Pa": line.slope},
+        )
+    return line
+
+
+def slope_budget(line: Line, curve: StressStrain) -> tuple[Contribution, ...]:
+    """Budget of a modulus: the scatter about its line, the load cell, the geometry.
+
+    Rounding to the cell's resolution (uniform, so 1/sqrt(12) of a step) is part of the residuals
+    already; where the residuals show less than it must have caused, it stands in their place.
+    """
+    rounding = curve.stress_resolution_Pa / math.sqrt(12.0 * line.sum_squares_x)
+    scatter = math.sqrt(max(line.standard_error**2 - rounding**2, 0.0))
+    own = (
+        Contribution("scatter about the line, autocorrelated", scatter, shared=False),
+        Contribution("load cell resolution", rounding, shared=False),
+    )
+    return tuple(c for c in own if c.u > 0.0) + relative_lines(
+        line.slope, curve.stress_budget + curve.strain_budget
+    )
+
+
+def line_diagnostics(line: Line) -> dict[str, float | int | str]:
+    """Keep the numbers that tell how far a slope can be trusted."""
+    return {
+        "samples": line.n,
+        "intercept_Pa": line.intercept,
+        "naive_standard_error_Pa": line.naive_standard_error,
+        "standard_error_Pa": line.standard_error,
+        "autocorrelation": line.autocorrelation,
+        "independent_samples": line.independent_samples,
+        "degrees_of_freedom": line.degrees_of_freedom,
+        "residual_sd_Pa": line.residual_sd,
+    }
+
+
+def correlation_flags(line: Line) -> tuple[Flag, ...]:
+    """Flag a slope whose residuals run together so much that its standard error is a guess."""
+    if line.independent_samples >= FEW_INDEPENDENT:
+        return ()
+    return (
+        Flag(
+            "few-independent-samples",
+            f"neighbouring residuals correlate by {line.autocorrelation:.2f}, so {line.n} samples "
+            f"count as {line.independent_samples:.1f}: the curve bends or the noise drifts, and "
+            "the standard error of the slope is rough",
+        ),
+    )
+
+
+def outlying_flags(line: Line, strain: FloatArray, stress_Pa: FloatArray) -> tuple[Flag, ...]:
+    """Flag readings that lie far off the line of the others; they stay in the fit all the same."""
+    far = outlying(strain, stress_Pa, line)
+    if far.size == 0:
+        return ()
+    return (
+        Flag(
+            "outlying-readings",
+            f"{far.size} of {line.n} readings lie more than 6 standard deviations of the majority "
+            f"off the line, the first at {100 * strain[far[0]]:.3g} % strain; they pull the slope",
+        ),
+    )
+
+
+def modulus(
+    key: str,
+    line: Line,
+    curve: StressStrain,
+    inside: IndexArray,
+    recording: Recording,
+    *,
+    method: str,
+    conditions: Mapping[str, Condition],
+    flags: tuple[Flag, ...],
+    diagnostics: Mapping[str, float | int | str],
+    further: tuple[Contribution, ...] = (),
+) -> MeasuredValue:
+    """Wrap the line of a window as the value of a modulus `[Pa]`."""
+    budget = slope_budget(line, curve) + further
+    return MeasuredValue(
+        key=key,
+        quantity=Quantity.from_budget(line.slope, "Pa", budget),
+        budget=budget,
+        method=f"{method}; {curve.basis}",
+        conditions=conditions,
+        lines=line_span(
+            recording.source, curve.nominal_strain.size, int(inside[0]), int(inside[-1])
+        ),
+        diagnostics={**line_diagnostics(line), **diagnostics},
+        flags=flags
+        + correlation_flags(line)
+        + outlying_flags(line, curve.nominal_strain[inside], curve.nominal_stress_Pa[inside]),
+    )

@@ -1,0 +1,65 @@
+"""What a reduction ends in: a value with its lines and budget, or a refusal with its reason."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from deamat.core.errors import FitRefused
+from deamat.core.quantity import Contribution
+from deamat.core.records import Condition, Measurement, Recording, Refusal, Source, Specimen
+
+
+def recorded(recording: Recording | None) -> Recording:
+    """Insist on a recording.
+
+    Raises
+    ------
+    FitRefused : there is none
+    """
+    if recording is None:
+        raise FitRefused("the register names no data file for this specimen; fill in `file`")
+    return recording
+
+
+def line_span(source: Source, rows: int, first: int, last: int) -> tuple[int, int]:
+    """Give the lines of the file that hold samples `first` to `last`.
+
+    Where data rows and lines do not run in step (blank lines between them), the whole span of the
+    data is the only certain answer.
+    """
+    if source.last_line - source.first_line + 1 != rows:
+        return source.first_line, source.last_line
+    return source.first_line + first, source.first_line + last
+
+
+def relative_lines(value: float, budget: Iterable[Contribution]) -> tuple[Contribution, ...]:
+    """Turn relative lines of a budget into those of the value; lines of nothing are left out."""
+    return tuple(Contribution(c.source, abs(value) * c.u, c.shared) for c in budget if c.u > 0.0)
+
+
+def refusal(
+    specimen: Specimen, key: str, error: FitRefused, conditions: Mapping[str, Condition]
+) -> Refusal:
+    """Turn an estimator's refusal into one of this specimen's property."""
+    return Refusal(
+        key,
+        error.reason,
+        specimen.material,
+        specimen.campaign,
+        specimen.id,
+        {**specimen.conditions, **conditions},
+        error.diagnostics,
+    )
+
+
+def nothing_measured(
+    specimen: Specimen, keys: Iterable[str], error: FitRefused, recording: Recording | None
+) -> Measurement:
+    """Refuse every property of a specimen whose curve cannot be made."""
+    return Measurement(
+        specimen,
+        (),
+        tuple(refusal(specimen, key, error, {}) for key in keys),
+        {},
+        None if recording is None else recording.source,
+    )

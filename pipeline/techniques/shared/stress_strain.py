@@ -1,0 +1,164 @@
+"""From a machine's columns and the register's geometry to nominal stress and strain."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from deamat.core.arrays import FloatArray
+from deamat.core.errors import FitRefused
+from deamat.core.instruments import Machine
+from deamat.core.quantity import Contribution, Quantity
+from deamat.core.records import Flag, Recording
+from deamat.techniques.shared.geometry import Section, scale_budget
+
+IndexArray = NDArray[np.intp]
+
+
+@dataclass(frozen=True, slots=True)
+class StressStrain:
+    """A nominal stress-strain curve, signed so that loading is positive.
+
+    Parameters
+    ----------
+    nominal_strain : displacement over the initial length, shape (n,) `[1]`
+    nominal_stress_Pa : force over the initial area, shape (n,) `[Pa]`
+    strain_budget, stress_budget : relative standard uncertainties of their scales `[1]`
+    stress_resolution_Pa : one step of the load cell over the area `[Pa]`
+    basis : which columns and whose geometry, in words
+    own : the file's own (strain, stress) where they stand beside force and displacement
+    """
+
+    nominal_strain: FloatArray
+    nominal_stress_Pa: FloatArray
+    strain_budget: tuple[Contribution, ...]
+    stress_budget: tuple[Contribution, ...]
+    stress_resolution_Pa: float
+    basis: str
+    own: tuple[FloatArray, FloatArray] | None
+
+
+def stress_strain(
+    recording: Recording, section: Section, length: Quantity, length_name: str, machine: Machine
+) -> StressStrain:
+    r"""Reduce a recording to nominal stress and strain, loading positive.
+
+    $$ \varepsilon = \pm \Delta l / l_0, \qquad \sigma = \pm F / A_0 $$
+
+    Force and displacement are preferred, with the register's geometry; the file's own columns
+    then only serve as a check. A file with nothing but its own columns is used as it is: the
+    geometry was its exporter's, and its uncertainty cannot enter. The signs are those of the
+    greatest excursions from the first sample while loading, so exports of either sign agree.
+
+    Parameters
+    ----------
+    recording : with `force_N` and `displacement_m`, or `nominal_strain` and `nominal_stress_Pa`
+    section, length : initial area, and height or gauge length `[m]`
+    length_name : what to call the length (`height`)
+    machine : resolution and calibration of load cell and crosshead
+
+    Raises
+    ------
+    FitRefused : columns are missing, not finite, or never move
+    """
+    columns = recording.columns
+    strain_budget: tuple[Contribution, ...] = (
+        Contribution("displacement calibration", machine.u_displacement_calibration, shared=True),
+    )
+    stress_budget: tuple[Contribution, ...] = (
+        Contribution("load cell calibration", machine.u_force_calibration, shared=True),
+    )
+    own = None
+    if "nominal_strain" in columns and "nominal_stress_Pa" in columns:
+        own = (columns["nominal_strain"], columns["nominal_stress_Pa"])
+    if "force_N" in columns and "displacement_m" in columns:
+        strain, stress = _loading_positive(
+            columns["displacement_m"], columns["force_N"], length.value, section.area_m2
+        )
+        strain_budget += scale_budget(length_name, length)
+        stress_budget += section.budget
+        basis = f"force over the register's cross-section, displacement over its {length_name}"
+        if own is not None:
+            own = _loading_positive(*own)
+    elif own is not None:
+        strain, stress = _loading_positive(*own)
+        own = None
+        basis = (
+            "the file's own stress and strain; the geometry behind them is the exporter's, could "
+            "not be checked and is in no uncertainty"
+        )
+    else:
+        raise FitRefused(
+            "a stress-strain curve needs force_N and displacement_m, or nominal_strain and "
+            f"nominal_stress_Pa; the file has {', '.join(sorted(columns)) or 'no columns'}"
+        )
+    return StressStrain(
+        strain,
+        stress,
+        strain_budget,
+        stress_budget,
+        machine.force_resolution_N / section.area_m2,
+        basis,
+        own,
+    )
+
+
+def _loading_positive(
+    path: FloatArray, load: FloatArray, length: float = 1.0, area: float = 1.0
+) -> tuple[FloatArray, FloatArray]:
+    """Divide by length and area, signed by where the loading takes the two columns."""
+    if path.size == 0:
+        raise FitRefused("the file has no samples")
+    far, reach = _excursion(path)
+    if not (math.isfinite(reach) and math.isfinite(np.add.reduce(load))):
+        raise FitRefused("displacement, force, strain or stress holds values that are not finite")
+    if reach == 0.0:
+        raise FitRefused(
+            f"displacement (or strain) is the same in all {path.size} samples: nothing was loaded"
+        )
+    _, rise = _excursion(load[: far + 1])
+    return path / math.copysign(length, reach), load / math.copysign(area, rise)
+
+
+def _excursion(values: FloatArray) -> tuple[int, float]:
+    """Find the first sample that is farthest from sample 0, and its signed distance."""
+    up, down = int(values.argmax()), int(values.argmin())
+    start = float(values[0])
+    rise, fall = float(values[up]) - start, float(values[down]) - start
+    if rise == -fall:
+        return min((up, rise), (down, fall))
+    return (up, rise) if rise > -fall else (down, fall)
+
+
+def disagreement(curve: StressStrain, inside: IndexArray, tolerance: float) -> tuple[Flag, ...]:
+    """Hold the file's own stress and strain against force, displacement and geometry.
+
+    Parameters
+    ----------
+    inside : indices of the samples to compare
+    tolerance : greatest difference, relative to the greatest value among them, to pass unnoticed
+    """
+    if curve.own is None:
+        return ()
+    flags = []
+    pairs = (
+        ("strain", curve.own[0], curve.nominal_strain),
+        ("stress", curve.own[1], curve.nominal_stress_Pa),
+    )
+    for name, theirs, ours in pairs:
+        a, b = theirs[inside], ours[inside]
+        size = float(np.abs(b).max())
+        worst = float(np.abs(a - b).max())
+        if worst > tolerance * size > 0.0:
+            flags.append(
+                Flag(
+                    "own-columns-disagree",
+                    f"the file's own {name} is {float(a.dot(b) / b.dot(b)):.4f} times what force, "
+                    "displacement and the register's geometry give; they differ by up to "
+                    f"{100 * worst / size:.2g} % of the {name} in the window",
+                )
+            )
+    return tuple(flags)

@@ -1,0 +1,24 @@
+"""What a laboratory may decide about its tensile tests: `[tension]`."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from deamat.techniques.shared.curve_config import CurveConfig, StrainWindow
+
+MODULUS = "tensile_modulus"
+STRENGTH = "tensile_strength"
+ELONGATION = "elongation_at_break"
+YIELDS = (MODULUS, STRENGTH, ELONGATION)
+VERSION = 2
+
+
+class TensionConfig(CurveConfig):
+    """`[tension]` in `config/methods.toml`."""
+
+    window: StrainWindow = Field(
+        default=(0.0, 0.01), description="nominal strain over which the slope is taken"
+    )
+    break_drop: float = Field(
+        default=0.5, gt=0, lt=1, description="part of the greatest load whose loss is a break"
+    )
