@@ -1,11 +1,13 @@
 # deamat: `make all` reprocesses raw/ into processed/, `make test` runs the tests, `make help` lists the rest.
 VENV := .venv
 BIN := $(VENV)/bin
-PIP := $(BIN)/pip --disable-pip-version-check --quiet
-PYTHON ?= python3.11
+PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
+PYTHON ?=
+QUICK := tests/core tests/formats tests/materials tests/actuator tests/run/test_incremental.py \
+  tests/test_cli_design.py tests/test_public.py
 
 .DEFAULT_GOAL := help
-.PHONY: all paper test check bench chart stability docs help clean
+.PHONY: all paper test quick check shell bench chart stability docs help clean
 
 all: $(VENV)/.runtime  ## reprocess raw/ into processed/: read, fit, refuse, publish cards
 	@$(BIN)/deamat all
@@ -16,9 +18,14 @@ paper: all  ## write processed/paper/: the article's numbers, printed beside rec
 test: $(VENV)/.dev  ## run the whole test suite
 	@$(BIN)/python -m pytest --numprocesses=auto --dist=loadfile
 
-check: $(VENV)/.dev  ## style, types and import contracts
-	@mkdir -p .link && ln -sfn ../pipeline .link/deamat
+quick: $(VENV)/.dev  ## a third of it in half a minute: core, formats, cards, actuator, one small run
+	@$(BIN)/python -m pytest --numprocesses=auto --dist=loadfile $(QUICK)
+
+check: $(VENV)/.dev .link/deamat  ## style, types and import contracts
 	@$(BIN)/ruff check . && $(BIN)/ruff format --check . && $(BIN)/mypy && $(BIN)/lint-imports
+
+shell: $(VENV)/.runtime  ## a shell in which deamat can be called; `exit` leaves it
+	@PATH="$$PWD/$(BIN):$$PATH" "$${SHELL:-sh}"
 
 bench: $(VENV)/.dev  ## measure speed against rivals (ratios in one run)
 	@$(BIN)/python -m benchmarks.read_and_fit
@@ -34,15 +41,20 @@ docs: $(VENV)/.dev  ## write docs/benchmarks.md, reading-speed.md and the pictur
 	@$(BIN)/python -m benchmarks.read_and_fit --docs
 
 clean:  ## forget everything that can be made again
-	rm -rf $(VENV) && find processed -mindepth 1 ! -name README.md -delete
+	rm -rf $(VENV) && cd processed && find . ! -name . ! -name README.md -prune -exec rm -rf {} +
+
+.link/deamat:  # the folder pipeline/ under the name that imports use, for mypy
+	@mkdir -p .link && ln -s ../pipeline $@
 
 $(VENV)/.runtime: pyproject.toml constraints.txt
-	@test -d $(VENV) || $(PYTHON) -m venv $(VENV)
+	@sh .ci/venv $(VENV) $(PYTHON)
+	@echo "installing into $(VENV), about a minute, once"
 	@$(PIP) install -c constraints.txt setuptools
 	@$(PIP) install -c constraints.txt --no-build-isolation -e .
 	@touch $@
 
 $(VENV)/.dev: $(VENV)/.runtime
+	@echo "installing the tools for tests into $(VENV), about a minute, once"
 	@$(PIP) install -c constraints.txt --no-build-isolation -e '.[dev,bench]'
 	@touch $@
 

@@ -1,11 +1,14 @@
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 import deamat
+from tests.conftest import ROOT
 
 
 def test_importing_the_package_imports_nothing_else() -> None:
@@ -41,3 +44,22 @@ def test_another_name_does_not_exist() -> None:
     misspelt = "open_databse"
     with pytest.raises(AttributeError, match="module 'deamat' has no attribute 'open_databse'"):
         getattr(deamat, misspelt)
+
+
+def test_it_works_beside_somebody_elses_pipeline(tmp_path: Path) -> None:
+    (tmp_path / "pipeline.py").write_text('name = "somebody else\'s"\n')
+    (tmp_path / "script.py").write_text(
+        "import pipeline, deamat\n"
+        "print(pipeline.name, deamat.Quantity(1.0, 'Pa').unit, deamat.open_database.__name__)\n"
+    )
+    run = subprocess.run(
+        [sys.executable, "script.py"], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    assert run.stdout == "somebody else's Pa open_database\n"
+
+
+def test_the_citation_names_this_version_and_licence() -> None:
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    said = dict(re.findall(r"^(version|license): (.+)$", citation, re.MULTILINE))
+    assert said == {"version": deamat.__version__, "license": "MIT"}
+    assert (ROOT / "LICENSE").read_text(encoding="utf-8").startswith("MIT License\n")
