@@ -10,6 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 from deamat.core.errors import ConfigError
+from deamat.run.environment import installed
 from deamat.run.folders import Folders, look
 from deamat.run.host import cpu_count
 from deamat.run.published import intact
@@ -43,6 +44,7 @@ def run_all(
         if (
             not verify
             and state.read_note("places") == places
+            and state.read_note("installed") == installed()
             and state.unchanged(seen)
             and intact(folders.processed, state.read_note("published"))
         ):
@@ -54,6 +56,7 @@ def run_all(
             folders, state, seen, workers=workers or cpu_count(), progress=progress, verify=verify
         )
         state.note("places", places)
+        state.note("installed", installed())
         state.note("document", json.dumps(document))
         return {**document, "nothing_to_do": False}
 

@@ -50,11 +50,6 @@ class Book:
             self._made[stage] = self.state.made(stage)
         return self._made[stage]
 
-    def known_component(self, stage: str, subject: str, name: str) -> str | None:
-        """Give a component that is only known once the subject was made (the reader of a file)."""
-        known = self._known(stage)
-        return known[subject][1].get(name) if subject in known else None
-
     def fresh(self, stage: str, subject: str, components: Mapping[str, str]) -> bool:
         """Say whether the subject was made from exactly these components; note why if not."""
         self._asked.setdefault(stage, set()).add(subject)
@@ -86,9 +81,14 @@ class Book:
         """Give what was made of a subject in an earlier run."""
         return pickle.loads(self.state.result(stage, subject))
 
-    def earlier(self, stage: str, subject: str) -> Any:
-        """Give what was made of a subject in an earlier run, None where nothing was."""
-        return self.result(stage, subject) if subject in self._known(stage) else None
+    def earlier(self, stage: str, subject: str, components: Mapping[str, str]) -> Any:
+        """Give what an earlier run made of a subject, None where nothing or by other code.
+
+        What other code pickled may have fields that this code does not know.
+        """
+        known = self._known(stage)
+        same = subject in known and known[subject][1].get("code") == components["code"]
+        return self.result(stage, subject) if same else None
 
     def close(self) -> None:
         """Forget every subject that this run did not ask for, and note what went."""

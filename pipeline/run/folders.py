@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 _PACKAGE = Path(__file__).resolve().parents[1]
-_CODE = (".py", ".toml")
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,12 +30,7 @@ class Stat:
 def look(folders: Folders) -> dict[str, Stat]:
     """List every input: `raw/...`, `config/...` and the package's own sources as `code/...`."""
     roots = {"raw": folders.raw, "config": folders.config, "code": _PACKAGE}
-    return {
-        path: stat
-        for prefix, root in roots.items()
-        for path, stat in _walk(str(root), prefix)
-        if prefix != "code" or path.endswith(_CODE)
-    }
+    return {path: stat for prefix, root in roots.items() for path, stat in _walk(str(root), prefix)}
 
 
 def locate(path: str, folders: Folders) -> Path:

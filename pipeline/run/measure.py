@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import platform
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from graphlib import TopologicalSorter
@@ -15,17 +14,12 @@ from deamat.core.properties import REFERENCE_AGE
 from deamat.core.quantity import Quantity
 from deamat.core.records import Condition, Law, Measurement, PropertyRecord, Specimen, Summary
 from deamat.core.technique import Context, Technique
-from deamat.formats import FORMATS
 from deamat.run.book import STALE, Book, digest, key_of
 from deamat.run.folders import Folders
+from deamat.run.stages import Stages
 from deamat.run.survey import Survey
 from deamat.run.work import FILES_PER_TASK, Reduced, Task, reduce_one
 from deamat.run.workers import Workers
-
-# Raise it when the driver itself may give another answer from the same file, room and settings.
-SPINE_VERSION = 1
-
-_READERS = {form.name: form.version for form in FORMATS}
 
 E = TypeVar("E", PropertyRecord, Law)
 Progress = Callable[[str, int, int], None]
@@ -72,6 +66,7 @@ class Bench:
 
     folders: Folders
     config: Config
+    stages: Stages
     surveys: Sequence[Survey]
     book: Book
     workers: Workers
@@ -113,7 +108,6 @@ def measure(technique: Technique, bench: Bench) -> list[Measured]:
             measured.append(Measured(task.specimen, STALE, None))
         else:
             reduced = next(made)
-            parts = {**parts, "reader": _reader(reduced.reader)}
             key = bench.book.keep("measurement", subject, parts, reduced)
             measured.append(Measured(task.specimen, key, reduced))
     return measured
@@ -132,9 +126,8 @@ def summarise(technique: Technique, measured: Sequence[Measured], bench: Bench) 
         good = tuple(m.reduced.measurement for m in members if m.reduced and m.reduced.measurement)
         bare = Group(campaign, material, technique.key, conditions, "", good, None)
         parts = {
-            "technique": f"{technique.key}@{technique.version}",
+            **bench.stages.parts(f"summary {technique.key}"),
             "config": config_digest(config),
-            "spine": str(SPINE_VERSION),
             **{f"specimen {m.specimen.id}": m.key for m in members},
         }
         place = (campaign, material)
@@ -148,7 +141,7 @@ def summarise(technique: Technique, measured: Sequence[Measured], bench: Bench) 
             summary = bench.book.result("summary", bare.subject)
             key = key_of(parts)
         elif bench.dry:
-            summary, key = bench.book.earlier("summary", bare.subject), STALE
+            summary, key = bench.book.earlier("summary", bare.subject, parts), STALE
             if summary:
                 bench.stale += [*summary.records, *summary.laws]
             else:
@@ -198,28 +191,16 @@ def _tasks(technique: Technique, bench: Bench) -> Iterator[tuple[str, dict[str, 
             subject = f"{specimen.campaign}/{specimen.technique}/{specimen.id}"
             parts = {
                 "register row": digest(specimen),
-                "technique": f"{technique.key}@{technique.version}",
                 "config": config_digest(config),
                 "instrument": f"{name}:{config_digest(machine)}",
                 "campaign": digest((info.ends_open, info.timezone, survey.stated_units)),
                 "needs": STALE if awaited else digest(sorted(found.items())),
-                "spine": f"{SPINE_VERSION} on Python {platform.python_version()}",
-                "reader": "none",
+                **bench.stages.parts(f"measurement {technique.key}"),
             }  # fmt: skip
             if entry:
-                known = bench.book.known_component("measurement", subject, "reader")
                 parts["file"] = entry.sha256
                 parts["manifest"] = entry.manifest
-                parts["formats"] = digest(sorted(_READERS))
-                parts["reader"] = (
-                    _reader(known.removeprefix("reader:").partition("@")[0]) if known else "unknown"
-                )
             yield subject, parts, task
-
-
-def _reader(name: str) -> str:
-    """A reader with the version it has now."""
-    return f"{name}@{_READERS[name]}" if name in _READERS else "none"
 
 
 def needs_met(

@@ -20,6 +20,7 @@ from deamat.run.measure import Bench, Group, Measured, Progress, in_order, measu
 from deamat.run.publish import publish
 from deamat.run.published import listing
 from deamat.run.release import Release
+from deamat.run.stages import find_stages
 from deamat.run.state import State
 from deamat.run.survey import Survey, survey
 from deamat.run.workers import Workers
@@ -66,8 +67,9 @@ def process(
     config = load_config(folders.config, {t.key: t.config for t in TECHNIQUES.values()})
     surveys, left_alone = look_at_raw(folders, seen, hashes, config)
     book = Book(state)
+    stages = find_stages(TECHNIQUES, hashes, state)
     with Workers(workers) as pool:
-        bench = Bench(folders, config, surveys, book, pool, progress, dry)
+        bench = Bench(folders, config, stages, surveys, book, pool, progress, dry)
         groups: list[Group] = []
         measured: list[Measured] = []
         for technique in in_order(TECHNIQUES):

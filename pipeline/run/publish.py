@@ -17,9 +17,6 @@ from deamat.run.draw import FigureJob, draw_all, figure_jobs
 from deamat.run.measure import Bench, Group
 from deamat.run.release import Release
 
-# Raise it when the same records would give another file.
-OUTPUT_VERSION = 1
-
 
 @dataclass(frozen=True, slots=True)
 class Press:
@@ -35,9 +32,16 @@ class Press:
         parts: Mapping[str, str],
         names: Sequence[str],
         write: Callable[[Release], None],
+        runs: str = "",
     ) -> str:
-        """Make the files `names` from `parts` unless they are there already; gives their key."""
-        parts = {**parts, "output": str(OUTPUT_VERSION)}
+        """Make the files `names` unless they are there already; return their key.
+
+        Parameters
+        ----------
+        parts : what the files are made from, beside the code of the stage
+        runs : the stage's name among `bench.stages` where it is not `stage`
+        """
+        parts = {**parts, **self.bench.stages.parts(runs or stage)}
         fresh = self.bench.book.fresh(stage, subject, parts)
         if self.release is None:
             return key_of(parts) if fresh else STALE
@@ -133,7 +137,8 @@ def _figures(groups: Sequence[Group], press: Press) -> None:
     """Draw the figures that are stale, in parallel where there are many."""
     stale: list[FigureJob] = []
     for job, parts in figure_jobs(groups, press.bench):
-        press.make("figure", job.name, parts, job.files, partial(_later, stale, job))
+        runs = "figure" if job.technique is None else f"figure {job.technique}"
+        press.make("figure", job.name, parts, job.files, partial(_later, stale, job), runs)
     if press.release is not None and stale:
         draw_all(stale, press.release.path("figures"), press.bench)
 

@@ -58,13 +58,16 @@ def small_campaign(folder: Path) -> None:
     register(folder.parent, folder.name, accept=True)
 
 
-def all_of_one_material(folder: Path, material: str) -> None:
-    """Write and register a campaign with everything that was measured on one material."""
+def all_of_one_material(folder: Path, material: str, most: int | None = None) -> None:
+    """Write and register a campaign with what was measured on one material.
+
+    `most` keeps so many files of each technique; None keeps all.
+    """
     for path in sorted(TWIN.glob("*/*.csv")):
         name = path.relative_to(TWIN).as_posix()
         mine = [row for row in _rows(name) if row["material"] == material]
         if mine:
-            _copy(mine, folder, name)
+            _copy(mine[:most] if "file" in mine[0] else mine, folder, name)
     register(folder.parent, folder.name, accept=True)
 
 

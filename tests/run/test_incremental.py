@@ -128,19 +128,37 @@ def test_a_changed_name_redoes_the_card_and_its_figures(folders: Folders) -> Non
     assert _stages(done) == {"measurement": 0, "summary": 0, "card": 1, "figure": 2}
 
 
-def test_a_changed_stage_version(folders: Folders, monkeypatch: pytest.MonkeyPatch) -> None:
-    import dataclasses
-
-    from deamat.techniques import TECHNIQUES
-
+@pytest.mark.parametrize(
+    ("file", "line", "again"),
+    [
+        ("campaign.toml", 'timezone = "America/New_York"', 6),
+        ("campaign.toml", "ends_open = true", 6),
+        ("README.md", "Load [kN]: compressive force", 6),
+        ("campaign.toml", 'operator = "a note of the laboratory"', 0),
+    ],
+)
+def test_what_a_campaign_says_of_all_its_files(
+    file: str, line: str, again: int, folders: Folders
+) -> None:
+    """Stamps, the last line's end and contradicted units depend on it, in no file of theirs."""
     run(folders)
-    raised = dataclasses.replace(TECHNIQUES["compression"], version=1000)
-    monkeypatch.setitem(TECHNIQUES, "compression", raised)
-    os.utime(
-        curves(folders)[0], ns=(1, 1)
-    )  # the declared versions are read again when code changed
-    why = explain(folders)["now"]
-    assert sum("technique changed" in line for line in why if "measurement" in line) == 6
+    with (folders.raw / "demo" / file).open("a") as out:
+        out.write(f"\n{line}\n")
+    register(folders.raw, "demo", accept=True)
+    why = [said for said in explain(folders)["now"] if said.startswith("measurement")]
+    assert [said.partition(": ")[2] for said in why] == again * ["campaign changed"]
+    assert _stages(_redone(folders))["measurement"] == again
+
+
+def test_a_changed_machine_redoes_what_it_measured(folders: Folders) -> None:
+    run(folders)
+    path = folders.config / "instruments.toml"
+    text = path.read_text()
+    assert "force_resolution_N = 0.005" in text
+    for old, new, again in (("= 0.0001\n", "= 0.0002\n", 0), ("= 0.005\n", "= 0.006\n", 6)):
+        text = text.replace(f"force_resolution_N {old}", f"force_resolution_N {new}", 1)
+        path.write_text(text)
+        assert _stages(_redone(folders))["measurement"] == again
 
 
 def test_a_deleted_output_is_made_again(folders: Folders) -> None:
