@@ -1,0 +1,96 @@
+"""Promises about the end of a pull: broken, turned back or stopped; slips and cycles before it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from deamat.core.arrays import FloatArray
+from deamat.estimators.curves.rupture import End, count_loadings, find_rupture, find_slip
+
+E = 600e3
+
+
+def pull(to: float, n: int = 101) -> FloatArray:
+    return np.linspace(0.0, to, n)
+
+
+def record(*parts: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, FloatArray]:
+    strains, stresses = zip(*parts, strict=True)
+    return np.concatenate(strains), np.concatenate(stresses)
+
+
+UP = (pull(1.5), E * pull(1.5))
+BACK = (pull(1.5)[::-1], E * pull(1.5)[::-1])
+FAST_BACK = (np.array([0.7, 0.3, 0.0]), E * np.array([0.68, 0.29, 0.0]))
+ENDS: dict[str, tuple[tuple[FloatArray, FloatArray], End, int]] = {
+    "collapse while the crosshead goes on": (
+        record(UP, (np.array([1.52, 1.54]), np.array([10.0, 5.0]))), "broke", 100,
+    ),
+    "one sample after the break": (record(UP, (np.array([1.51]), np.zeros(1))), "broke", 100),
+    "an export filled up with zeros": (record(UP, (np.zeros(9), np.zeros(9))), "broke", 100),
+    "a crosshead that returns without load": (
+        record(UP, (pull(1.5)[::-1], np.full(101, 3.0))), "broke", 100,
+    ),
+    "the record ends under load": (UP, "stopped", 100),
+    "the machine turns": (record(UP, BACK), "reversed", 100),
+    "the machine turns between two samples": (record(UP, FAST_BACK), "reversed", 100),
+    "a hysteresis of a quarter of the load": (
+        record(UP, (pull(1.5)[::-1], 0.75 * E * pull(1.5)[::-1])), "reversed", 100,
+    ),
+    "cycles, then a break": (
+        record(
+            (pull(0.5), E * pull(0.5)), (pull(0.5)[::-1], E * pull(0.5)[::-1]), UP,
+            (np.array([1.52]), np.zeros(1)),
+        ), "broke", 302,
+    ),
+    "a lost sample on the way": (
+        record((UP[0], np.where(np.arange(101) == 40, 0.0, UP[1])), (np.array([1.52]), np.zeros(1))),
+        "broke", 100,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("curve", "end", "last"), ENDS.values(), ids=ENDS)
+def test_how_a_pull_ended(curve: tuple[FloatArray, FloatArray], end: End, last: int) -> None:
+    found = find_rupture(*curve, 0.5)
+    assert (found.end, found.last, found.maximum) == (end, last, last)
+    assert found.first_after == (last + 1 if end == "broke" else None)
+
+
+def test_an_unsteady_fall_of_the_load_before_the_end_is_still_one_break() -> None:
+    strain, stress = record(UP, (np.linspace(1.5, 1.52, 5), E * np.array([1.4, 1.1, 0.9, 0.2, 0])))
+    found = find_rupture(strain, stress, 0.5)
+    assert (found.end, found.last, found.maximum) == ("broke", 103, 100)
+
+
+def slipped(loss: float, again: float = 2.0) -> tuple[FloatArray, FloatArray]:
+    first, then = pull(1.0), np.linspace(1.01, again, 100)
+    return record((first, E * first), (then, E * (1.0 - loss) + E * (then - 1.01)))
+
+
+@pytest.mark.parametrize("loss", [0.06, 0.3, 0.8])
+def test_a_sudden_loss_of_load_that_comes_back_is_a_slip(loss: float) -> None:
+    strain, stress = slipped(loss)
+    found = find_slip(strain, stress, strain.size - 1)
+    assert found is not None
+    assert (found.at, found.count) == (100, 1)
+    assert found.loss == pytest.approx(loss)
+
+
+def test_noise_unloading_and_the_break_itself_are_no_slips() -> None:
+    rng = np.random.default_rng(8)
+    noisy = UP[1] + rng.normal(0.0, 9e3, 101)
+    assert find_slip(UP[0], noisy, 100) is None
+    strain, stress = record(UP, BACK, UP)
+    assert find_slip(strain, stress, strain.size - 1) is None
+    strain, stress = record(UP, (np.array([1.52, 1.54]), np.array([10.0, 5.0])))
+    assert find_slip(strain, stress, 102) is None
+
+
+def test_loadings_are_counted() -> None:
+    assert count_loadings(pull(1.5), 100) == 1
+    strain = np.concatenate([pull(0.5), pull(0.5)[::-1]] * 3 + [pull(2.0)])
+    assert count_loadings(strain, strain.size - 1) == 4
+    assert count_loadings(strain, 100) == 1
+    assert count_loadings(pull(0.3) + np.tile([0.0, -0.004], 51)[:101], 100) == 1
