@@ -7,7 +7,7 @@ QUICK := tests/core tests/formats tests/materials tests/actuator tests/run/test_
   tests/test_cli_design.py tests/test_public.py
 
 .DEFAULT_GOAL := help
-.PHONY: all paper test quick check shell bench chart stability docs help clean
+.PHONY: all paper test quick check shell bench chart stability mutants docs help clean
 
 all: $(VENV)/.runtime  ## reprocess raw/ into processed/: read, fit, refuse, publish cards
 	@$(BIN)/deamat all
@@ -36,6 +36,9 @@ chart: $(VENV)/.dev  ## draw accuracy against speed of all estimators (simulated
 stability: $(VENV)/.dev  ## map where estimators hold, flag, refuse or are silently wrong (simulated)
 	@$(BIN)/python -m benchmarks.stability
 
+mutants: $(VENV)/.dev  ## put 150 slips into each of three packages: how many do the tests notice?
+	@$(BIN)/python -m benchmarks.mutation estimators materials run --sample 150 --seed 1
+
 docs: $(VENV)/.dev  ## write docs/benchmarks.md, reading-speed.md and the pictures of docs/methods anew
 	@$(BIN)/python -m benchmarks.chart --docs && $(BIN)/python -m benchmarks.stability --docs
 	@$(BIN)/python -m benchmarks.read_and_fit --docs
@@ -55,7 +58,7 @@ $(VENV)/.runtime: pyproject.toml constraints.txt
 
 $(VENV)/.dev: $(VENV)/.runtime
 	@echo "installing the tools for tests into $(VENV), about a minute, once"
-	@$(PIP) install -c constraints.txt --no-build-isolation -e '.[dev]'
+	@$(PIP) install -c constraints.txt --no-build-isolation -e '.[dev,bench]'
 	@touch $@
 
 help:  ## print this chain

@@ -44,6 +44,17 @@ def test_interval_covers_with_and_without_a_shared_error(n: int, shared: float) 
     assert 0.935 <= hits / repeats <= 0.975
 
 
+def test_effective_degrees_of_freedom_are_those_of_welch_and_satterthwaite() -> None:
+    # s^2 / n = 14 / 12 as above; with a shared part as large u_c^2 doubles, so nu = 3 x 2^2 = 12
+    equal = mean_with_shared([10.0, 11.0, 12.0, 15.0], 0.0, math.sqrt(14.0 / 12.0))
+    assert equal.degrees_of_freedom == pytest.approx(12.0)
+    # and with one of three times the variance it is fourfold: nu = 3 x 4^2 = 48
+    larger = mean_with_shared([10.0, 11.0, 12.0, 15.0], 0.0, math.sqrt(42.0 / 12.0))
+    assert larger.degrees_of_freedom == pytest.approx(48.0)
+    half = 2.010634758 * math.sqrt(56.0 / 12.0)  # Student's t, 48 degrees of freedom, 97.5 %
+    assert larger.ci95 == pytest.approx((12.0 - half, 12.0 + half))
+
+
 def test_shared_error_never_averages_away() -> None:
     rng = np.random.default_rng(1)
     mean = mean_with_shared(rng.normal(5.0, 1.0, 10_000).tolist(), 0.0, 0.2)

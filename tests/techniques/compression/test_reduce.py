@@ -73,6 +73,16 @@ def test_a_toe_is_flagged_and_compensated_under_its_own_name() -> None:
     assert "zero of the toe's tangent" in {c.source for c in compensated.budget}
 
 
+def test_the_toes_zero_counts_as_anywhere_in_its_bin_of_one_percent() -> None:
+    # on a parabola the slope over a window moves by 2 x 4e5 Pa for each unit that its zero moves
+    value = compress(5e4 * STRAIN + 4e5 * STRAIN**2).values[1]
+    (line,) = [c for c in value.budget if c.source == "zero of the toe's tangent"]
+    zeros = np.random.default_rng(3).uniform(-0.005, 0.005, 20_000)
+    assert line.u == pytest.approx(8e5 * zeros.std(), rel=0.01)
+    assert line.u == pytest.approx(8e5 * 0.01 / math.sqrt(12.0), rel=1e-6)
+    assert not line.shared
+
+
 def test_a_load_that_nobody_zeroed_stands_in_the_compensated_budget_alone() -> None:
     toe = 1e5 * (STRAIN - 0.004 * -np.expm1(-STRAIN / 0.004)) * (1.0 + STRAIN)
     zeroed, not_zeroed = compress(toe), compress(toe + 200.0)
