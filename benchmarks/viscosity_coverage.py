@@ -43,7 +43,7 @@ def in_memory(run: SimulatedRun) -> tuple[Specimen, Recording]:
         "torque": run.torque[kept],
         "line": np.flatnonzero(kept).astype(np.float64) + 3.0,
     }
-    source = Source("synthetic", "0" * 64, 3, len(kept) + 2, "utf-8", "twin", 1)
+    source = Source("synthetic", "0" * 64, 3, len(kept) + 2, "utf-8", "twin")
     specimen = Specimen(
         str(run.batch), run.material, "twin", "viscosity", "synthetic", None, {}, {}, {},
         "specimens.csv", run.batch + 1,

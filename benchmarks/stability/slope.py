@@ -120,7 +120,7 @@ def _ask(curves: Sequence[Curve]) -> list[Told]:
 def _ask_one(curve: Curve) -> Told:
     x, y = curve
     columns = {"displacement_m": x * _HEIGHT_m, "force_N": y * _AREA_m2}
-    source = Source("a.csv", "0" * 64, 1, len(x), "utf-8", "simulated", 1)
+    source = Source("a.csv", "0" * 64, 1, len(x), "utf-8", "simulated")
     measured = TECHNIQUE.reduce(_SPECIMEN, Recording(columns, {}, {}, source), _CONTEXT)
     low, high = np.full(2, np.nan), np.full(2, np.nan)
     flags = [frozenset[str](), frozenset[str]()]

@@ -42,7 +42,7 @@ class Source:
     sha256 : of the file's bytes
     first_line, last_line : the data rows, as lines counted from 1
     encoding : as found (`utf-8`, `utf-8-sig`, `utf-16`, `latin-1`)
-    reader, reader_version : which format read it
+    reader : name of the format that read it
     """
 
     path: str
@@ -51,7 +51,6 @@ class Source:
     last_line: int
     encoding: str
     reader: str
-    reader_version: int
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,7 +29,7 @@ from deamat.formats.header import Layout, two_row_layout, units_row
 from deamat.formats.rawfile import Head, RawFile
 from deamat.formats.table import read_table, required
 
-_READER = Reader("antonpaar", 1, Dialect(";", ","))
+_READER = Reader("antonpaar", Dialect(";", ","))
 
 
 def _layout(head: Head) -> Layout | None:
@@ -47,4 +47,4 @@ def _read(file: RawFile) -> Recording:
     return read_table(file, layout, _READER, {})
 
 
-FORMAT = Format(_READER.name, _READER.version, "Anton Paar flow curve", _recognises, _read, ";")
+FORMAT = Format(_READER.name, "Anton Paar flow curve", _recognises, _read, ";")

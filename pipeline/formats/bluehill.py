@@ -32,7 +32,7 @@ from deamat.formats.header import Layout, two_row_layout, units_row
 from deamat.formats.rawfile import Head, RawFile
 from deamat.formats.table import read_plain
 
-_READER = Reader("bluehill", 1, Dialect(",", quoted=True))
+_READER = Reader("bluehill", Dialect(",", quoted=True))
 
 
 def _layout(head: Head) -> Layout | None:
@@ -50,7 +50,6 @@ def _read(file: RawFile) -> Recording:
 
 FORMAT = Format(
     _READER.name,
-    _READER.version,
     "Instron Bluehill raw data",
     _recognises,
     _read,

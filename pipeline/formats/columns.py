@@ -21,14 +21,13 @@ class Reader:
 
     Parameters
     ----------
-    name, version : of the format
+    name : of the format
     dialect : how it writes rows
     unwritten : label in lower case to unit, for columns that the exporter documents but writes
         without a unit; each use is kept in the metadata
     """
 
     name: str
-    version: int
     dialect: Dialect
     unwritten: Mapping[str, str] = field(default_factory=dict, hash=False)
 

@@ -44,7 +44,7 @@ from deamat.formats.lcr_sweep import (
 )
 from deamat.formats.rawfile import Head, RawFile
 
-_NAME, _VERSION = "e4980a", 1
+_NAME = "e4980a"
 _FREQUENCY = re.compile(r"freq(?:uency)?\s*(?:[(\[_ ]\s*hz\s*[)\]]?)?", re.IGNORECASE)
 _PAIR_LABELS = (("primary", "secondary"), ("data a", "data b"), ("a", "b"))
 _STATUSES = {
@@ -102,7 +102,7 @@ def _read(file: RawFile) -> Recording:
             short = value.casefold().startswith(_SHORT)
             metadata["speed"] = "fast" if short else value.casefold()
     sweep = Sweep(at + 1, function_columns(mode), Dialect(","), _STATUSES)
-    return read_sweep(file, sweep, metadata, _NAME, _VERSION)
+    return read_sweep(file, sweep, metadata, _NAME)
 
 
 def _settings(lines: Sequence[str]) -> list[tuple[int, str, str]]:
@@ -116,4 +116,4 @@ def _settings(lines: Sequence[str]) -> list[tuple[int, str, str]]:
     return found
 
 
-FORMAT = Format(_NAME, _VERSION, "Keysight E4980A sweep, logged on a PC", _recognises, _read, ",")
+FORMAT = Format(_NAME, "Keysight E4980A sweep, logged on a PC", _recognises, _read, ",")

@@ -18,7 +18,7 @@ def long_recording(
     columns: Mapping[str, FloatArray],
     sample_of_row: Sequence[str],
     lines: FloatArray,
-    reader: tuple[str, int],
+    reader: str,
     metadata: Mapping[str, str],
     units: Mapping[str, str],
 ) -> Recording:
@@ -34,7 +34,7 @@ def long_recording(
     index = {name: float(i) for i, name in enumerate(names)}
     numbered = np.array([index[name] for name in sample_of_row])
     source = Source(
-        file.path, file.sha256, int(lines.min()), int(lines.max()), file.encoding, *reader
+        file.path, file.sha256, int(lines.min()), int(lines.max()), file.encoding, reader
     )
     said = {**metadata, "samples": SEPARATOR.join(names)}
     return Recording({**columns, "sample": numbered, "line": lines}, said, units, source)

@@ -34,7 +34,6 @@ from deamat.formats.table import read_table, required
 
 _READER = Reader(
     "flow_tab",
-    1,
     Dialect("\t"),
     {"point no.": "1", "shear rate": "1/s", "viscosity": "Pa.s"},
 )
@@ -71,4 +70,4 @@ def _read(file: RawFile) -> Recording:
     return replace(recording, flags=(*recording.flags, flag))
 
 
-FORMAT = Format(_READER.name, _READER.version, "tab-separated flow curve", _recognises, _read, "\t")
+FORMAT = Format(_READER.name, "tab-separated flow curve", _recognises, _read, "\t")

@@ -16,7 +16,6 @@ class Format:
     Parameters
     ----------
     name : what registers and messages call it
-    version : raise it when `read` may give other numbers
     title : instrument and form in words
     recognises : does the file's head look like this format? Given `RawFile.head`; of rows of plain
         numbers it may look at what parts the numbers, not at the numbers
@@ -25,7 +24,6 @@ class Format:
     """
 
     name: str
-    version: int
     title: str
     recognises: Callable[[Head], bool]
     read: Callable[[RawFile], Recording]

@@ -41,7 +41,7 @@ from deamat.formats.header import Layout, notes, split
 from deamat.formats.rawfile import RawFile
 from deamat.formats.table import read_table, required
 
-_NAME, _VERSION = "hv_ramp", 1
+_NAME = "hv_ramp"
 _CHANNEL_LABEL = re.compile(r"ch(\d+)")
 _CHANNEL_LINE = re.compile(r"#\s*channel\s+(\d+)\s*:\s*(.*?)\s*", re.IGNORECASE)
 _MONITOR = re.compile(r"(voltage|current) monitor\s*,\s*(\S+)\s+([a-z]+)\s*/\s*V", re.IGNORECASE)
@@ -91,7 +91,7 @@ def _read(file: RawFile) -> Recording:
     layout = required(_layout(file.head), file.head, _NAME, file.path)
     delimiter = _delimiter(file.head[layout.names])
     decimal = "." if delimiter == "," else file.decimal_mark(layout.rows)
-    reader = Reader(_NAME, _VERSION, Dialect(delimiter, decimal))
+    reader = Reader(_NAME, Dialect(delimiter, decimal))
     monitors = _monitors(file, layout)
     remarks = [line.lstrip("# ") for line in file.head[: layout.names]]
     table = read_table(file, layout, reader, notes(remarks))
@@ -181,4 +181,4 @@ def _named(
     return columns
 
 
-FORMAT = Format(_NAME, _VERSION, "high-voltage ramp, DAQ log or plain table", _recognises, _read)
+FORMAT = Format(_NAME, "high-voltage ramp, DAQ log or plain table", _recognises, _read)

@@ -35,7 +35,7 @@ from deamat.formats.header import Layout, split, split_label
 from deamat.formats.rawfile import RawFile
 from deamat.formats.table import read_table, required
 
-_READER = Reader("hysitron", 1, Dialect("\t", segmented=True))
+_READER = Reader("hysitron", Dialect("\t", segmented=True))
 _POINTS = "Number of Points"
 
 
@@ -101,4 +101,4 @@ def _read(file: RawFile) -> Recording:
     return recording
 
 
-FORMAT = Format(_READER.name, _READER.version, "Hysitron TriboScan text", _recognises, _read, "\t")
+FORMAT = Format(_READER.name, "Hysitron TriboScan text", _recognises, _read, "\t")

@@ -42,7 +42,7 @@ from deamat.formats.lcr_sweep import (
 )
 from deamat.formats.rawfile import Head, RawFile
 
-_NAME, _VERSION = "lcr6000", 1
+_NAME = "lcr6000"
 _REPLY = re.compile(r"#?\s*(\S.*?)\s*=>\s*(.*?)\s*")
 _STATUSES = {"ok": True, "out": False, "over": False}
 _ROW = re.compile(rf"[^#,]+,[^,]+,[^,]+,\s*(?:{'|'.join(_STATUSES)})\s*", re.IGNORECASE)
@@ -95,7 +95,7 @@ def _read(file: RawFile) -> Recording:
         elif key.casefold() == "*idn?":
             metadata.update(zip(_IDENTITY, map(str.strip, reply.split(",", 3)), strict=False))
     sweep = Sweep(len(header), function_columns(mode), Dialect(","), _STATUSES)
-    return read_sweep(file, sweep, metadata, _NAME, _VERSION)
+    return read_sweep(file, sweep, metadata, _NAME)
 
 
-FORMAT = Format(_NAME, _VERSION, "GW Instek LCR-6000, PC-logged replies", _recognises, _read, ",")
+FORMAT = Format(_NAME, "GW Instek LCR-6000, PC-logged replies", _recognises, _read, ",")

@@ -39,7 +39,7 @@ from deamat.formats.header import bare_unit, split
 from deamat.formats.lcr_sweep import PAIRS, Column, Sweep, read_sweep
 from deamat.formats.rawfile import RawFile
 
-_NAME, _VERSION = "lcr_csv", 1
+_NAME = "lcr_csv"
 _STATUSES = {"ok": True, "out": False, "over": False}
 _FREQUENCY = ("frequency", "freq", "f")
 _STATUS = "status"
@@ -104,7 +104,7 @@ def _read(file: RawFile) -> Recording:
     columns = _columns(file, at, mode, numeric)
     decimal = "." if delimiter == "," else file.decimal_mark(first)
     sweep = Sweep(first, columns, Dialect(delimiter, decimal), _STATUSES if has_status else None)
-    return read_sweep(file, sweep, {**_remarks(head[:at]), "mode": mode}, _NAME, _VERSION)
+    return read_sweep(file, sweep, {**_remarks(head[:at]), "mode": mode}, _NAME)
 
 
 def _mode(file: RawFile, at: int, stems: Sequence[str]) -> str:
@@ -182,4 +182,4 @@ def _remarks(lines: Sequence[str]) -> dict[str, str]:
     return kept
 
 
-FORMAT = Format(_NAME, _VERSION, "LCR sweep as a plain table", _recognises, _read)
+FORMAT = Format(_NAME, "LCR sweep as a plain table", _recognises, _read)

@@ -130,9 +130,7 @@ def level_of(file: RawFile, line: int, text: str) -> str:
     return repr(si_factor(found[2] or "V")[1] * float(found[1]))
 
 
-def read_sweep(
-    file: RawFile, sweep: Sweep, metadata: Mapping[str, str], reader: str, version: int
-) -> Recording:
+def read_sweep(file: RawFile, sweep: Sweep, metadata: Mapping[str, str], reader: str) -> Recording:
     """Read the rows of a sweep into SI, marking what the meter calls over-range.
 
     Raises
@@ -165,7 +163,7 @@ def read_sweep(
         flags += (_over_range_flag(over, columns["frequency_Hz"], sweep.first + 1),)
     source = Source(
         file.path, file.sha256, sweep.first + 1, sweep.first + len(lines), file.encoding,
-        reader, version,
+        reader,
     )  # fmt: skip
     return Recording(
         {**columns, "over_range": over.astype(np.float64)},

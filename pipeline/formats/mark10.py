@@ -30,7 +30,7 @@ from deamat.formats.header import Layout, notes, split, split_label
 from deamat.formats.rawfile import Head, RawFile
 from deamat.formats.table import read_table, required
 
-_READER = Reader("mark10", 1, Dialect("\t"), {"reading": "1", "time": "s"})
+_READER = Reader("mark10", Dialect("\t"), {"reading": "1", "time": "s"})
 _HEADER_UNITS = {"Load": "Units", "Travel": "Travel Unit"}
 _SPELLINGS = {"lbF": "lbf", "ozF": "ozf", "kgF": "kgf", "gF": "gf"}
 
@@ -65,7 +65,6 @@ def _read(file: RawFile) -> Recording:
 
 FORMAT = Format(
     _READER.name,
-    _READER.version,
     "Mark-10 or Chatillon log",
     _recognises,
     _read,

@@ -31,7 +31,7 @@ from deamat.formats.header import Layout, inline_layout, two_row_layout, units_r
 from deamat.formats.rawfile import Head, RawFile
 from deamat.formats.table import read_plain
 
-_READER = Reader("mts", 1, Dialect("\t", decimal=","))
+_READER = Reader("mts", Dialect("\t", decimal=","))
 
 
 def _layout(head: Head) -> Layout | None:
@@ -56,7 +56,6 @@ def _read(file: RawFile) -> Recording:
 
 FORMAT = Format(
     _READER.name,
-    _READER.version,
     "MTS text with decimal commas",
     _recognises,
     _read,

@@ -40,7 +40,7 @@ from deamat.formats.viscometer import (
     temperature_K,
 )
 
-_NAME, _VERSION = "ndj8s", 1
+_NAME = "ndj8s"
 _SETTING = re.compile(r"([0-9]+)#([0-9]+(?:\.[0-9]+)?) ?RPM")
 _START = re.compile(r"[^\t#]+\t *[0-9]+#[0-9.]+ ?RPM\b")
 
@@ -67,9 +67,7 @@ def _read(file: RawFile) -> Recording:
         elif line.strip():
             readings.append(_reading(file, at, line))
     clock, times = clock_column(file, [(r.line, r.clock) for r in readings])
-    return recording(
-        file, readings, clock, times, (_NAME, _VERSION), remarks, {"viscosity": "mPa.s"}
-    )
+    return recording(file, readings, clock, times, _NAME, remarks, {"viscosity": "mPa.s"})
 
 
 def _reading(file: RawFile, at: int, line: str) -> Reading:
@@ -102,4 +100,4 @@ def _reading(file: RawFile, at: int, line: str) -> Reading:
     return Reading(at, stamp.strip(), numbers)
 
 
-FORMAT = Format(_NAME, _VERSION, "NDJ-8S serial lines, PC-stamped", _recognises, _read)
+FORMAT = Format(_NAME, "NDJ-8S serial lines, PC-stamped", _recognises, _read)

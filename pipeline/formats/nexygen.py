@@ -29,7 +29,7 @@ from deamat.formats.header import Layout, inline_layout
 from deamat.formats.rawfile import Head, RawFile
 from deamat.formats.table import read_plain
 
-_READER = Reader("nexygen", 1, Dialect("\t"))
+_READER = Reader("nexygen", Dialect("\t"))
 
 
 def _layout(head: Head) -> Layout | None:
@@ -47,7 +47,6 @@ def _read(file: RawFile) -> Recording:
 
 FORMAT = Format(
     _READER.name,
-    _READER.version,
     "Lloyd Nexygen text",
     _recognises,
     _read,

@@ -34,7 +34,7 @@ from deamat.formats.header import Layout, inline_layout, notes
 from deamat.formats.rawfile import Head, RawFile
 from deamat.formats.table import read_table, required
 
-_READER = Reader("phantom", 1, Dialect(","))
+_READER = Reader("phantom", Dialect(","))
 
 
 def _layout(head: Head) -> Layout | None:
@@ -54,7 +54,6 @@ def _read(file: RawFile) -> Recording:
 
 FORMAT = Format(
     _READER.name,
-    _READER.version,
     "curves with units beside the labels",
     _recognises,
     _read,

@@ -34,7 +34,7 @@ from deamat.formats.header import Layout, bare_unit
 from deamat.formats.quantities import assign, meaning
 from deamat.formats.rawfile import RawFile
 
-_NAME, _VERSION = "rheocompass", 1
+_NAME = "rheocompass"
 _LABELS = re.compile(r"(?:Abschnittsdaten|Interval data):\t")
 _POINTS = re.compile(r"(?:Abschnitt und Datenpunkte|Interval and data points):\t[0-9]+\t([0-9]+)")
 
@@ -91,7 +91,7 @@ def _read(file: RawFile) -> Recording:
     said = {layout.labels[c]: rows[0][c + 1] for c in range(width) if c not in numeric}
     source = Source(
         file.path, file.sha256, layout.rows + 1, layout.rows + len(rows), file.encoding,
-        _NAME, _VERSION,
+        _NAME,
     )  # fmt: skip
     units = {label: layout.units[c] for label, c in zip(labels, numeric, strict=True)}
     return Recording(columns, {**_notes(file.head[: layout.names]), **said}, units, source)
@@ -140,4 +140,4 @@ def _notes(lines: list[str]) -> dict[str, str]:
     return kept
 
 
-FORMAT = Format(_NAME, _VERSION, "Anton Paar RheoCompass interval", _recognises, _read, "\t")
+FORMAT = Format(_NAME, "Anton Paar RheoCompass interval", _recognises, _read, "\t")

@@ -30,7 +30,7 @@ from deamat.formats.flow_samples import long_recording
 from deamat.formats.format import Format
 from deamat.formats.rawfile import RawFile
 
-_NAME, _VERSION = "rheodata", 1
+_NAME = "rheodata"
 _LABELS = "sample_id,shear_rate_1/s,stress_Pa"
 
 
@@ -68,7 +68,7 @@ def _read(file: RawFile) -> Recording:
     lines = np.arange(2.0, 2.0 + len(rows))
     units = {"shear_rate": "1/s", "stress": "Pa"}
     samples = [sample.strip() for sample, _, _ in parts]
-    return long_recording(file, columns, samples, lines, (_NAME, _VERSION), {}, units)
+    return long_recording(file, columns, samples, lines, _NAME, {}, units)
 
 
-FORMAT = Format(_NAME, _VERSION, "rheodata collection", _recognises, _read)
+FORMAT = Format(_NAME, "rheodata collection", _recognises, _read)

@@ -33,7 +33,7 @@ from deamat.formats.format import Format
 from deamat.formats.numbers import read_block
 from deamat.formats.rawfile import RawFile
 
-_NAME, _VERSION = "schmid", 1
+_NAME = "schmid"
 _SI = ("1/s", "Pa", "Pa.s")
 
 
@@ -73,9 +73,7 @@ def _read(file: RawFile) -> Recording:
     lines = np.tile(np.arange(at + 3.0, at + 3.0 + rows), len(names))
     samples = [name for name in names for _ in range(rows)]
     units = {"Shear stress": file.head[at + 1].split("\t")[1], "Shear rate": file.head[at + 1][1:5]}
-    return long_recording(
-        file, columns, samples, lines, (_NAME, _VERSION), _notes(file.head[1:at]), units
-    )
+    return long_recording(file, columns, samples, lines, _NAME, _notes(file.head[1:at]), units)
 
 
 def _factors(file: RawFile, at: int, columns: int) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
@@ -107,4 +105,4 @@ def _notes(lines: list[str]) -> dict[str, str]:
     return kept
 
 
-FORMAT = Format(_NAME, _VERSION, "flow curves side by side, % header", _recognises, _read, "\t")
+FORMAT = Format(_NAME, "flow curves side by side, % header", _recognises, _read, "\t")

@@ -32,7 +32,7 @@ from deamat.formats.header import Layout, inline_layout
 from deamat.formats.rawfile import Head, RawFile
 from deamat.formats.table import read_plain
 
-_READER = Reader("soro", 1, Dialect(";"), {"true strain": "1", "engineering strain": "1"})
+_READER = Reader("soro", Dialect(";"), {"true strain": "1", "engineering strain": "1"})
 
 
 def _layout(head: Head) -> Layout | None:
@@ -50,7 +50,6 @@ def _read(file: RawFile) -> Recording:
 
 FORMAT = Format(
     _READER.name,
-    _READER.version,
     "Soft Robotics Materials Database",
     _recognises,
     _read,

@@ -125,7 +125,6 @@ def _read_rows(file: RawFile, heading: _Heading, reader: Reader) -> Recording:
         last_line=lines[-1],
         encoding=file.encoding,
         reader=reader.name,
-        reader_version=reader.version,
     )
     lead = columns[_lead(told.names)]
     flags = told.flags

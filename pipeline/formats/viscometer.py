@@ -52,7 +52,7 @@ def recording(
     readings: Sequence[Reading],
     clock: str,
     times: FloatArray,
-    reader: tuple[str, int],
+    reader: str,
     metadata: Mapping[str, str],
     units: Mapping[str, str],
 ) -> Recording:
@@ -61,7 +61,7 @@ def recording(
     Parameters
     ----------
     clock, times : name of the column of time, and its values, shape (readings,)
-    reader : name and version of the format
+    reader : name of the format
 
     Raises
     ------
@@ -88,7 +88,7 @@ def recording(
     partly = {n for i in kept for n in readings[i].numbers} - set(names)
     flags = [*_left_out(readings), *_partly(partly)]
     source = Source(
-        file.path, file.sha256, readings[0].line, readings[-1].line, file.encoding, *reader
+        file.path, file.sha256, readings[0].line, readings[-1].line, file.encoding, reader
     )
     return Recording(columns, metadata, units, source, tuple(flags))
 

@@ -47,7 +47,7 @@ from deamat.formats.viscometer import (
     temperature_K,
 )
 
-_NAME, _VERSION = "viscometer_csv", 1
+_NAME = "viscometer_csv"
 _ELAPSED = {f"{stem}_{unit}": unit for stem in ("time", "elapsed") for unit in ("s", "min", "h")}
 _VISCOSITY = {"viscosity_mPas": "mPa.s", "viscosity_Pas": "Pa.s"}
 _OTHERS = {
@@ -107,7 +107,7 @@ def _read(file: RawFile) -> Recording:
     else:
         clock, times = "time_s", _elapsed(file, readings, labels)
     units = {"viscosity": _VISCOSITY[next(label for label in labels if label in _VISCOSITY)]}
-    return recording(file, readings, clock, times, (_NAME, _VERSION), remarks, units)
+    return recording(file, readings, clock, times, _NAME, remarks, units)
 
 
 def _check(file: RawFile, line: int, labels: Sequence[str]) -> None:
@@ -203,4 +203,4 @@ def _elapsed(file: RawFile, readings: Sequence[Reading], labels: Sequence[str]) 
     return times
 
 
-FORMAT = Format(_NAME, _VERSION, "plain CSV of viscosity against time", _recognises, _read)
+FORMAT = Format(_NAME, "plain CSV of viscosity against time", _recognises, _read)

@@ -37,7 +37,7 @@ from deamat.formats.header import Layout, two_row_layout
 from deamat.formats.rawfile import Head, RawFile
 from deamat.formats.table import read_plain
 
-_READER = Reader("zwick", 1, Dialect(","))
+_READER = Reader("zwick", Dialect(","))
 
 
 def _layout(head: Head) -> Layout | None:
@@ -81,7 +81,6 @@ def _trailing_zeros(recording: Recording) -> tuple[Flag, ...]:
 
 FORMAT = Format(
     _READER.name,
-    _READER.version,
     "Zwick testXpert text",
     _recognises,
     _read,

@@ -12,7 +12,6 @@ from deamat.core.campaign import find_campaigns
 from deamat.core.config import Config, load_config
 from deamat.core.errors import ConfigError
 from deamat.core.ledger import FileEntry, Provenance
-from deamat.formats import FORMATS
 from deamat.run.book import Book, key_of
 from deamat.run.describe import describe
 from deamat.run.folders import Folders, Stat, locate
@@ -139,8 +138,7 @@ def _account(surveys: list[Survey], measured: list[Measured]) -> list[FileEntry]
 
 def _provenance(config: Config, seen: Mapping[str, Stat], hashes: Mapping[str, str]) -> Provenance:
     code = {path: hashes[path] for path in seen if path.startswith("code/")}
-    stages = {f"reader:{form.name}": form.version for form in FORMATS}
-    stages |= {f"technique:{t.key}": t.version for t in TECHNIQUES.values()}
+    stages = {f"technique:{t.key}": t.version for t in TECHNIQUES.values()}
     return Provenance(
         __version__, key_of(code), tuple(sorted(stages.items())),
         tuple(sorted(config.files.items())),

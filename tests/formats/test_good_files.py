@@ -43,7 +43,6 @@ def test_the_recording_says_where_it_comes_from(sample: Sample) -> None:
     assert (recording.source.first_line, recording.source.last_line) == (sample.first, sample.last)
     assert recording.source.encoding == sample.encoding
     assert recording.source.reader == sample.format
-    assert recording.source.reader_version == by_name(sample.format).version
 
 
 @every_sample

@@ -39,7 +39,7 @@ def test_a_log_of_replies_comes_out_in_si_with_its_lines() -> None:
     }
     source = recording.source
     assert (source.first_line, source.last_line) == (6, 10)
-    assert (source.reader, source.reader_version) == ("lcr6000", 1)
+    assert source.reader == "lcr6000"
     assert [str(flag) for flag in recording.flags] == [
         "over-range: 2 of 5 points are no measurements by the meter's own word and are not used: line 8 (100 Hz), line 10 (10000 Hz)"
     ]

@@ -56,7 +56,7 @@ def origin(specimen: str, value: float, line: int, **changes: Any) -> Origin:
         "sha256": specimen[-1] * 64,
         "first_line": 12,
         "last_line": 83,
-        "reader": "bluehill@1",
+        "reader": "bluehill",
         "technique": "compression@2",
         "diagnostics": {"samples": 72, "r": 0.9991234},
     }

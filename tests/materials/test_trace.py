@@ -65,14 +65,14 @@ Specimens
   A1  158.2 ± 1.0 kPa  (158212.5 Pa)
     file         soft-2026/compression/A1.csv
     sha256       {"1" * 64}
-    lines        12 to 83, read by bluehill@1
+    lines        12 to 83, read by bluehill
     register     soft-2026/compression/specimens.csv, line 2
     technique    compression@2
     diagnostics  r 0.999123, samples 72
   A2  159.4 ± 1.0 kPa  (159412.5 Pa)
     file         soft-2026/compression/A2.csv
     sha256       {"2" * 64}
-    lines        12 to 83, read by bluehill@1
+    lines        12 to 83, read by bluehill
     register     soft-2026/compression/specimens.csv, line 3
     technique    compression@2
     diagnostics  r 0.999123, samples 72

@@ -18,7 +18,7 @@ EXACT = Machine(u_force_calibration=0.0, u_displacement_calibration=0.0)
 
 
 def source(rows: int, first_line: int = 9) -> Source:
-    return Source("c/t/a.csv", "0" * 64, first_line, first_line + rows - 1, "utf-8", "test", 1)
+    return Source("c/t/a.csv", "0" * 64, first_line, first_line + rows - 1, "utf-8", "test")
 
 
 def recording(**columns: FloatArray) -> Recording:

@@ -112,7 +112,7 @@ def test_every_strength_of_table_4_lies_in_its_interval(material: str) -> None:
 
 
 def in_memory(seed: int, material: str) -> list[Measurement]:
-    source = Source("x", "0" * 64, 1, 2, "utf-8", "none", 1)
+    source = Source("x", "0" * 64, 1, 2, "utf-8", "none")
     measured = []
     for number in range(1, SPECIMENS + 1):
         ramp = simulate_breakdown(seed, material, number)

@@ -131,7 +131,7 @@ def origin_of(measurement: Measurement, value: MeasuredValue, technique: str) ->
         sha256=None if source is None else source.sha256,
         first_line=first,
         last_line=last,
-        reader=None if source is None else f"{source.reader}@{source.reader_version}",
+        reader=None if source is None else source.reader,
         technique=technique,
         diagnostics=value.diagnostics,
     )

@@ -205,7 +205,7 @@ def test_the_files_of_seed_2022_give_the_truth_back_or_are_refused() -> None:
         low, high = record.ci95
         assert low <= true_modulus(material).value <= high
         assert record.flags == ()
-        assert {origin.reader for origin in record.origins} == {"hysitron@1"}
+        assert {origin.reader for origin in record.origins} == {"hysitron"}
     assert len(measured) == 6
 
 

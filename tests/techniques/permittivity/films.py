@@ -57,9 +57,7 @@ def recording(
         PAIRS[mode].secondary: secondary,
         "over_range": over,
     }
-    source = Source(
-        "c/permittivity/x.log", "0" * 64, 6, 5 + frequency_Hz.size, "utf-8", "lcr6000", 1
-    )
+    source = Source("c/permittivity/x.log", "0" * 64, 6, 5 + frequency_Hz.size, "utf-8", "lcr6000")
     return Recording(columns, metadata, {}, source, flags)
 
 

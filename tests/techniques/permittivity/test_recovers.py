@@ -118,7 +118,7 @@ def _interval(sweeps: list[SimulatedSweep], modulus: Quantity) -> tuple[float, f
             "parallel_capacitance_F": sweep.capacitance_F.real,
             "loss_tangent": loss_tangent(sweep.capacitance_F),
         }
-        source = Source("x", "", 1, sweep.frequency_Hz.size, "utf-8", "twin", 1)
+        source = Source("x", "", 1, sweep.frequency_Hz.size, "utf-8", "twin")
         specimen = Specimen(
             sweep.specimen, sweep.material, "c", ROOM.key, "x", None, sweep.numbers, {}, {}, "r", 1
         )

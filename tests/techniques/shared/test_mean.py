@@ -97,7 +97,7 @@ def test_origins_lead_to_the_lines_of_the_file() -> None:
     assert (first.register, first.register_line) == ("c/t/s.csv", 2)
     assert (first.path, first.sha256) == ("c/t/a.csv", "0" * 64)
     assert (first.first_line, first.last_line) == (9, 99)
-    assert (first.reader, first.technique) == ("test@1", "compression@1")
+    assert (first.reader, first.technique) == ("test", "compression@1")
     assert first.diagnostics == {"samples": 91}
 
 

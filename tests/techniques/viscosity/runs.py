@@ -27,7 +27,7 @@ def specimen(number: int = 1, **notes: str) -> Specimen:
 
 def recording(columns: Mapping[str, FloatArray], metadata: Mapping[str, str] = {}) -> Recording:
     rows = len(next(iter(columns.values())))
-    return Recording(columns, metadata, {}, Source("x", "0" * 64, 2, rows + 1, "utf-8", "test", 1))
+    return Recording(columns, metadata, {}, Source("x", "0" * 64, 2, rows + 1, "utf-8", "test"))
 
 
 def newtonian(
