@@ -58,7 +58,7 @@ $(VENV)/.runtime: pyproject.toml constraints.txt
 
 $(VENV)/.dev: $(VENV)/.runtime
 	@echo "installing the tools for tests into $(VENV), about a minute, once"
-	@$(PIP) install -c constraints.txt --no-build-isolation -e '.[dev,bench]'
+	@$(PIP) install -c constraints.txt --no-build-isolation -e '.[dev]'
 	@touch $@
 
 help:  ## print this chain

@@ -24,15 +24,18 @@ def test_importing_the_package_imports_nothing_else() -> None:
 
 
 def test_the_public_names_are_there() -> None:
-    assert sorted(deamat.__all__) == ["MaterialCard", "Quantity", "open_database"]
-    for name in deamat.__all__:
+    stated = Path(deamat.__file__).read_text(encoding="utf-8")
+    for_type_checkers = re.findall(r"^    from \S+ import (\w+) as \1$", stated, re.MULTILINE)
+    names = deamat.__dict__["__all__"]
+    assert sorted(for_type_checkers) == names
+    for name in names:
         assert name in dir(deamat)
-        assert getattr(deamat, name).__name__ == name
+        assert getattr(getattr(deamat, name), "__name__", name) == name
 
 
 def test_reading_a_card_needs_no_heavy_library() -> None:
     code = (
-        "import sys; import deamat; deamat.open_database, deamat.MaterialCard; "
+        "import sys; from deamat import MaterialCard, RawFileError, open_database, read_card; "
         "heavy = {'pandas', 'xarray', 'h5py', 'scipy', 'lmfit', 'matplotlib', 'pydantic'}; "
         "print(sorted(heavy & set(sys.modules)))"
     )

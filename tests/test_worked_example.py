@@ -1,4 +1,4 @@
-"""The worked example runs, prints what its page says, and its pictures are there and marked."""
+"""The pages with code run and print what they say; the worked example's pictures are marked."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+import deamat
 import deamat.run.draw
 from deamat.run.draw import FigureJob
 from deamat.run.folders import Folders
@@ -18,6 +19,7 @@ from deamat.twin.campaign import SEED, simulate
 from tests.run.conftest import ROOT, run
 
 PAGE = ROOT / "docs" / "worked-example.md"
+API = ROOT / "docs" / "api.md"
 BLOCKS = re.compile(r"```(python|text)\n(.*?)```", re.DOTALL)
 
 
@@ -41,27 +43,39 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def blocks() -> list[tuple[str, str]]:
-    return BLOCKS.findall(PAGE.read_text("utf-8"))
-
-
-def test_it_prints_what_the_page_says(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(home)
+def printed(page: Path) -> list[tuple[str, str]]:
+    """Run a page's code; what each block should print, and what the code before it printed."""
     names: dict[str, Any] = {}
-    printed = ""
-    shown = 0
-    for kind, text in blocks():
+    out = io.StringIO()
+    found = []
+    for kind, text in BLOCKS.findall(page.read_text("utf-8")):
         if kind == "text":
-            assert printed == text
-            shown += 1
+            found.append((text, out.getvalue()))
             continue
         out = io.StringIO()
         with contextlib.redirect_stdout(out):
-            exec(compile(text, str(PAGE), "exec"), names)
-        printed = out.getvalue()
-    assert shown == 4
-    for name in re.findall(r"\(img/([\w-]+\.svg)\)", PAGE.read_text("utf-8")):
+            exec(compile(text, str(page), "exec"), names)
+    return found
+
+
+@pytest.mark.parametrize(("page", "count"), [(PAGE, 4), (API, 10)], ids=["worked-example", "api"])
+def test_it_prints_what_the_page_says(
+    home: Path, monkeypatch: pytest.MonkeyPatch, page: Path, count: int
+) -> None:
+    monkeypatch.chdir(home)
+    shown = printed(page)
+    assert len(shown) == count
+    for said, found in shown:
+        assert found == said
+    for name in re.findall(r"\(img/([\w-]+\.svg)\)", page.read_text("utf-8")):
         assert "SYNTHETIC DATA" in (home / "img" / name).read_text()
+
+
+def test_the_page_of_the_api_names_every_public_name_and_imports_nothing_else() -> None:
+    text = API.read_text("utf-8")
+    table = text.split("| to | there is |")[1].split("\n\n")[0]
+    assert sorted(re.findall(r"`(\w+)`", table)) == sorted(deamat.__dict__["__all__"])
+    assert not re.findall(r"^(?:from|import) deamat\.", text, re.MULTILINE)
 
 
 def test_its_pictures_are_committed_small_and_marked() -> None:

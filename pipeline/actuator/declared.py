@@ -122,7 +122,7 @@ def _named(known: Mapping[str, T], key: str, what: str) -> T:
     return known[key]
 
 
-def load_designs(folder: Path) -> Designs:
+def load_designs(folder: str | Path) -> Designs:
     """Read and validate `designs.toml` of a configuration folder.
 
     Raises
@@ -130,7 +130,7 @@ def load_designs(folder: Path) -> Designs:
     ConfigError : no such file, TOML that does not parse, an unknown or missing key, a value out
         of range
     """
-    path = folder / DESIGNS_FILE
+    path = Path(folder) / DESIGNS_FILE
     if not path.is_file():
         raise ConfigError(f"no {path}: a design needs its electrode, tolerances and model declared")
     try:

@@ -7,6 +7,7 @@ and derivatives, shape (n, p). `FORMS` is the one list of them.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -79,6 +80,28 @@ FORMS: dict[str, Form] = {
     POWER_LAW_TO_GEL: _power_law_to_gel,
     POWER_LAW_FLUID: _power_law_fluid,
 }
+
+
+def coefficient_names(kind: str, count: int, parts: Sequence[int]) -> tuple[str, ...]:
+    """Name the coefficients of a form as its equation does, in their order.
+
+    Parameters
+    ----------
+    count : of coefficients
+    parts : lengths of the polynomials in a form that has several
+    """
+    if kind == EXPONENTIAL:
+        return "a", "b"
+    if kind == POWER_LAW_TO_GEL:
+        return "a", "x_gel", "s"
+    if kind == POWER_LAW_FLUID:
+        return tuple(f"{name}{k}" for name, n in zip("Kn", parts, strict=True) for k in range(n))
+    return tuple(f"c{k}" for k in range(count))
+
+
+def lower_bounds(kind: str, valid: tuple[float, float]) -> dict[str, float]:
+    """Lowest value of each coefficient that has one: the gel point lies after the last reading."""
+    return {"x_gel": math.nextafter(valid[1], math.inf)} if kind == POWER_LAW_TO_GEL else {}
 
 
 def evaluate(

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from deamat.core.errors import OutOfRange
+from deamat.core.units import si_factor
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +63,23 @@ class Quantity:
     def standard_uncertainty(self) -> float:
         """Combined standard uncertainty `[unit]`."""
         return math.hypot(self.u_independent, self.u_shared)
+
+    def to(self, unit: str) -> Quantity:
+        """Return the quantity in another unit, for people: everything here computes in SI.
+
+        Raises
+        ------
+        OutOfRange : the unit is one of something else
+        UnknownUnit : the unit is not in the closed table
+        """
+        mine, other = si_factor(self.unit), si_factor(unit)
+        if mine[0] != other[0]:
+            raise OutOfRange(f"{self.value:g} {self.unit} cannot be returned in {unit}")
+        factor = mine[1] / other[1]
+        return Quantity(
+            *(factor * self.value + (mine[2] - other[2]) / other[1], unit),
+            *(factor * self.u_independent, factor * self.u_shared),
+        )
 
     @classmethod
     def from_budget(cls, value: float, unit: str, budget: Iterable[Contribution]) -> Quantity:

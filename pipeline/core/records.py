@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from deamat.core.arrays import FloatArray
 from deamat.core.errors import OutOfRange
 from deamat.core.laws import evaluate
 from deamat.core.quantity import Contribution, Quantity
+
+if TYPE_CHECKING:
+    import lmfit
 
 Condition = str | float | tuple[float, float]
 Detail = float | int | str
@@ -265,6 +268,20 @@ class Law:
         value, slopes = evaluate(self.kind, coefficients, self.parts, x, rate_per_s)
         variance = float(slopes @ np.asarray(self.covariance) @ slopes)
         return Quantity(value, self.unit, max(variance, 0.0) ** 0.5)
+
+    def model(self) -> tuple[lmfit.Model, lmfit.Parameters]:
+        """Return the law as an lmfit model of `x`, and of `rate_per_s` where it has a shear rate.
+
+        Unlike the law itself, the model answers at any x.
+
+        Returns
+        -------
+        the model, and its parameters under the names of `core.laws.coefficient_names`, with their
+        standard uncertainties (`stderr`), correlations (`correl`) and bounds
+        """
+        from deamat.core.law_model import lmfit_model
+
+        return lmfit_model(self)
 
     @property
     def usual_rate(self) -> float | None:

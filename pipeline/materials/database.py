@@ -31,7 +31,10 @@ from deamat.materials.tables import (
 )
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray
+
+    from deamat.materials.frame import Range
 
 DATABASE_FILE = "materials.sqlite"
 CURVES_FILE = "curves.h5"
@@ -194,6 +197,14 @@ class Database(Mapping[str, MaterialCard]):
             f"nearest: {', '.join(near)}" if near else f"it holds {', '.join(held[:_SHOWN])}{more}"
         )
         return f"{self.path} has no material {material!r}; {hint}"
+
+    def to_frame(
+        self, ranges: Mapping[str, Range] | None = None, units: Mapping[str, str] | None = None
+    ) -> pd.DataFrame:
+        """Return all records, or those of the materials in ranges of properties: see `frame`."""
+        from deamat.materials.frame import to_frame
+
+        return to_frame(self.values(), ranges, units)
 
     def files(self) -> tuple[FileEntry, ...]:
         """Give the account of every file under `raw/`, by path."""
