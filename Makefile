@@ -7,7 +7,7 @@ QUICK := tests/core tests/formats tests/materials tests/actuator tests/run/test_
   tests/test_cli_design.py tests/test_public.py
 
 .DEFAULT_GOAL := help
-.PHONY: all paper test quick check shell bench chart stability mutants docs help clean
+.PHONY: all paper test quick check shell bench chart stability mutants docs schema help clean
 
 all: $(VENV)/.runtime  ## reprocess raw/ into processed/: read, fit, refuse, publish cards
 	@$(BIN)/deamat all
@@ -42,6 +42,9 @@ mutants: $(VENV)/.dev  ## put 150 slips into each of three packages: how many do
 docs: $(VENV)/.dev  ## write docs/benchmarks.md, reading-speed.md and the pictures of docs/methods anew
 	@$(BIN)/python -m benchmarks.chart --docs && $(BIN)/python -m benchmarks.stability --docs
 	@$(BIN)/python -m benchmarks.read_and_fit --docs
+
+schema: $(VENV)/.runtime  ## write docs/card.schema.json from the fields that a card has
+	@$(BIN)/python -m deamat.materials.json_schema > docs/card.schema.json
 
 clean:  ## forget everything that can be made again
 	rm -rf $(VENV) && cd processed && find . ! -name . ! -name README.md -prune -exec rm -rf {} +

@@ -19,6 +19,7 @@ if TYPE_CHECKING:  # `as` says to type checkers that a name is exported
     from deamat.actuator.stack import Layer as Layer
     from deamat.actuator.stack import Stack as Stack
     from deamat.actuator.strain import pull_in_voltage as pull_in_voltage
+    from deamat.core.errors import CardError as CardError
     from deamat.core.errors import ConfigError as ConfigError
     from deamat.core.errors import FitRefused as FitRefused
     from deamat.core.errors import MissingProperty as MissingProperty
@@ -38,7 +39,6 @@ if TYPE_CHECKING:  # `as` says to type checkers that a name is exported
     from deamat.materials.database import DatabaseError as DatabaseError
     from deamat.materials.database import MissingMaterial as MissingMaterial
     from deamat.materials.database import open_database as open_database
-    from deamat.materials.document import CardError as CardError
     from deamat.materials.frame import to_frame as to_frame
 
 __version__ = "0.1.0"

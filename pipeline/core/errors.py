@@ -58,6 +58,10 @@ class ConfigError(PipelineError):
     """A configuration file or a command line that does not say what it must."""
 
 
+class CardError(PipelineError):
+    """A card that does not hold together, or a file that is not a card."""
+
+
 class FitRefused(PipelineError):
     """An estimator declines to answer because its answer would not be trustworthy.
 

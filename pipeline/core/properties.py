@@ -67,7 +67,7 @@ PROPERTIES: dict[str, PropertyKey] = {p.key: p for p in _TABLE}
 
 # What tells two records of one material apart; the unit stands in the name.
 CONDITIONS: dict[str, str] = {
-    "age": "time between cure and test, as the register says it",
+    "age": "time between cure and test, as the register says it; `after cure` is the usual state",
     "cure": "cure schedule, as the register says it",
     "temperature_K": "temperature of the specimen",
     "humidity": "relative humidity of the room, 0 to 1",

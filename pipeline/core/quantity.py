@@ -5,25 +5,23 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Annotated, ClassVar
 
 from deamat.core.errors import OutOfRange
+from deamat.core.kinds import SAID, UNCERTAINTY, UNIT
+from deamat.core.schema import After, Entry
 from deamat.core.units import si_factor
 
 
 @dataclass(frozen=True, slots=True)
 class Contribution:
-    """One line of an uncertainty budget: a standard uncertainty and where it comes from.
+    """One line of an uncertainty budget: a standard uncertainty and where it comes from."""
 
-    Parameters
-    ----------
-    source : what causes it, such as `"load cell calibration"`
-    u : standard uncertainty `[unit of the value]`
-    shared : one error common to all specimens of a campaign (it never averages away)
-    """
+    ENTRY: ClassVar = Entry("contribution", "budgets")
 
-    source: str
-    u: float
-    shared: bool
+    source: Annotated[str, SAID, "What causes it, such as `load cell calibration`."]
+    u: Annotated[float, UNCERTAINTY, "Standard uncertainty, in the unit of the value."]
+    shared: Annotated[bool, "One error common to all specimens: it never averages away."]
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,13 +31,6 @@ class Quantity:
     The combined standard uncertainty is `u = sqrt(u_independent^2 + u_shared^2)`. A mean over n
     specimens divides only the independent part by sqrt(n).
 
-    Parameters
-    ----------
-    value : the value `[unit]`
-    unit : SI unit, such as `"Pa"`; `"1"` for a pure number
-    u_independent : scatter between specimens, fit `[unit]`
-    u_shared : gauge, load cell, plate area: common to the campaign `[unit]`
-
     Raises
     ------
     OutOfRange : a value that is not finite, or an uncertainty that is negative or not finite
@@ -48,9 +39,15 @@ class Quantity:
     """
 
     value: float
-    unit: str
-    u_independent: float = 0.0
-    u_shared: float = 0.0
+    unit: Annotated[str, UNIT]
+    u_independent: Annotated[
+        float, UNCERTAINTY, "Part that averages away over specimens (scatter between them, fit)."
+    ] = 0.0
+    u_shared: Annotated[
+        float,
+        UNCERTAINTY,
+        "Part common to the campaign (gauge, load cell, plate area): it never averages away.",
+    ] = 0.0
 
     def __post_init__(self) -> None:
         if not math.isfinite(self.value):
@@ -60,7 +57,14 @@ class Quantity:
                 raise OutOfRange(f"{name} must be finite and not negative, not {u} {self.unit}")
 
     @property
-    def standard_uncertainty(self) -> float:
+    def standard_uncertainty(
+        self,
+    ) -> Annotated[
+        float,
+        UNCERTAINTY,
+        After("unit"),
+        "Combined: the root of the sum of the squares of the two parts below.",
+    ]:
         """Combined standard uncertainty `[unit]`."""
         return math.hypot(self.u_independent, self.u_shared)
 

@@ -5,20 +5,36 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
 
 import numpy as np
 
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import OutOfRange
+from deamat.core.kinds import (
+    COUNT,
+    ID,
+    INTERVAL,
+    LINE,
+    NUMBER,
+    PROPERTY_KEY,
+    SAID,
+    SHA256,
+    UNCERTAINTY,
+    UNIT,
+    Kind,
+    array,
+    named,
+)
+from deamat.core.kinds import Condition as Condition  # two of the nouns, though declared there
+from deamat.core.kinds import Detail as Detail
 from deamat.core.laws import evaluate
+from deamat.core.properties import property_key
 from deamat.core.quantity import Contribution, Quantity
+from deamat.core.schema import After, Entry, Label, Mark
 
 if TYPE_CHECKING:
     import lmfit
-
-Condition = str | float | tuple[float, float]
-Detail = float | int | str
 
 # What the value of a record is: an estimate, or only a limit of what was seen to hold.
 Bound = Literal["exact", "interval", "lower"]
@@ -28,11 +44,26 @@ Bound = Literal["exact", "interval", "lower"]
 class Flag:
     """Something a reader of the value must know; it changes no number."""
 
+    ENTRY: ClassVar = Entry(
+        "flag",
+        "flags",
+        as_text=named(
+            "flag",
+            Kind({"type": "string", "pattern": "^[^:]+: "}, "TEXT"),
+            "What a reader of the value must know, as `name: detail`; no flag changes a number.",
+        ),
+    )
+
     name: str
     detail: str
 
     def __str__(self) -> str:
         return f"{self.name}: {self.detail}"
+
+    @classmethod
+    def from_text(cls, text: str) -> Self:
+        """Read back what `str` gives."""
+        return cls(*text.split(": ", 1))
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,10 +121,10 @@ class Specimen:
     register, line : the register's path relative to `raw/`, and the row's line
     """
 
-    id: str
-    material: str
-    campaign: str
-    technique: str
+    id: Annotated[str, Label("specimen")]
+    material: Annotated[str, Label("material")]
+    campaign: Annotated[str, Label("campaign")]
+    technique: Annotated[str, Label("technique")]
     file: str | None
     format: str | None
     numbers: Mapping[str, Quantity]
@@ -131,11 +162,15 @@ class MeasuredValue:
 class Refusal:
     """A value that was asked for and not given, and why."""
 
-    key: str
-    reason: str
-    material: str
-    campaign: str
-    specimen: str | None = None
+    ENTRY: ClassVar = Entry("refusal", "refusals")
+
+    key: Annotated[str, PROPERTY_KEY]
+    reason: Annotated[str, SAID, "Why, and what would make the value acceptable."]
+    material: Annotated[str, Mark.OF_THE_CARD]
+    campaign: Annotated[str, ID]
+    specimen: Annotated[str | None, Mark.ALWAYS, "Null if all specimens together were refused."] = (
+        None
+    )
     conditions: Mapping[str, Condition] = field(default_factory=dict)
     diagnostics: Mapping[str, Detail] = field(default_factory=dict)
 
@@ -160,34 +195,32 @@ class Measurement:
 class Origin:
     """One specimen's value behind a record, down to the bytes it rests on."""
 
-    specimen: str
+    ENTRY: ClassVar = Entry(
+        "origin", "origins", "One specimen's value, down to the bytes that it rests on."
+    )
+
+    specimen: Annotated[str, ID]
     value: float
-    u_independent: float
-    u_shared: float
-    register: str
-    register_line: int
-    path: str | None
-    sha256: str | None
-    first_line: int | None
-    last_line: int | None
-    reader: str | None
-    technique: str
+    u_independent: Annotated[float, UNCERTAINTY]
+    u_shared: Annotated[float, UNCERTAINTY]
+    register: Annotated[str, SAID, "Register, relative to raw/."]
+    register_line: Annotated[int, LINE]
+    path: Annotated[str | None, "Raw file, relative to raw/; null if the register holds the value."]
+    sha256: Annotated[str | None, SHA256, "Of the raw file's bytes."]
+    first_line: Annotated[
+        int | None, LINE, "First line of the raw file that the value rests on, counted from 1."
+    ]
+    last_line: Annotated[int | None, LINE]
+    reader: Annotated[str | None, "Format that read the file."]
+    technique: Annotated[str, SAID, "As `name@version`."]
     diagnostics: Mapping[str, Detail] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class PropertyRecord:
     """What one material has under one set of conditions, in one campaign.
 
-    Parameters
-    ----------
-    sd : standard deviation between specimens `[unit]`; None for one specimen
-    ci95 : 95 % confidence interval `[unit]`; where the value is a limit, the interval within which
-        the truth was seen to lie
-    budget : contributions to the standard uncertainty of `quantity`
-    bound : "exact" for an estimate; "interval" where `quantity` is the lower end of `ci95`;
-        "lower" where it is all that is known and the truth may be any larger (right-censored):
-        such a value is written `>= 12 h`, never `12 h`
+    A value that is a lower bound (right-censored) is written `>= 12 h`, never `12 h`.
 
     Raises
     ------
@@ -195,20 +228,54 @@ class PropertyRecord:
         said to be a lower bound
     """
 
-    key: str
-    material: str
-    campaign: str
+    ENTRY: ClassVar = Entry("property", "properties")
+
+    key: Annotated[str, PROPERTY_KEY, Mark.IN_FRONT]
+    material: Annotated[str, Mark.OF_THE_CARD]
     quantity: Quantity
-    n: int
-    sd: float | None
-    ci95: tuple[float, float]
+    sd: Annotated[
+        float | None,
+        UNCERTAINTY,
+        "Standard deviation between specimens; null for one specimen.",
+    ]
+    ci95: Annotated[
+        tuple[float, float],
+        INTERVAL,
+        "95 % confidence interval; null is a side without a bound.",
+    ]
+    bound: Annotated[
+        Bound,
+        "What the value is: an estimate; the lower end of the interval within which the truth was "
+        "seen to lie; or all that is known from below (right-censored: write `>= value`).",
+    ] = "exact"
+    n: Annotated[int, COUNT, "Specimens behind the value."]
     conditions: Mapping[str, Condition]
-    method: str
-    budget: tuple[Contribution, ...]
-    origins: tuple[Origin, ...]
-    flags: tuple[Flag, ...] = ()
+    campaign: Annotated[str, ID, Mark.IN_FRONT]
+    method: Annotated[str, SAID, "Estimator and window in words."]
+    budget: Annotated[
+        tuple[Contribution, ...],
+        "Contributions to the standard uncertainty, the largest first.",
+    ]
     diagnostics: Mapping[str, Detail] = field(default_factory=dict)
-    bound: Bound = "exact"
+    flags: tuple[Flag, ...] = ()
+    origins: tuple[Origin, ...]
+
+    @property
+    def symbol(self) -> Annotated[str, After("key"), Mark.NO_COLUMN]:
+        """Symbol of the property in figures."""
+        return property_key(self.key).symbol
+
+    @property
+    def standard(
+        self,
+    ) -> Annotated[
+        str,
+        After("method"),
+        Mark.NO_COLUMN,
+        "Test standard or article that defines the property.",
+    ]:
+        """Test standard or article that defines the property."""
+        return property_key(self.key).standard
 
     def __post_init__(self) -> None:
         if self.bound == "exact":
@@ -221,45 +288,62 @@ class PropertyRecord:
             )
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Law:
     r"""A fitted function of time (and shear rate) that answers with its uncertainty.
-
-    Parameters
-    ----------
-    key : property key of y
-    kind : name of its form in `core.laws.FORMS`
-    argument, argument_unit : what x is
-    coefficients : as the form takes them; a polynomial's lowest order first
-    covariance : of the coefficients, shape (p, p)
-    valid : range of x in which the law holds `[argument_unit]`
-    parts : lengths of the polynomials in a form that has several, else empty
-    rates : range of shear rates in which the law holds `[1/s]`; None for a form without a rate
-    degrees_of_freedom : of the covariance; None where it counts as known
 
     Raises
     ------
     OutOfRange : asked for an x outside `valid`, or a rate outside `rates`
     """
 
-    key: str
-    material: str
-    campaign: str
-    kind: str
-    unit: str
-    argument: str
-    argument_unit: str
-    coefficients: tuple[float, ...]
-    covariance: tuple[tuple[float, ...], ...]
-    valid: tuple[float, float]
+    ENTRY: ClassVar = Entry(
+        "law",
+        "laws",
+        "A function y(x) of a named form over its range of x; outside of it nothing is known.",
+    )
+
+    key: Annotated[str, PROPERTY_KEY, Mark.IN_FRONT, "Property key of y."]
+    material: Annotated[str, Mark.OF_THE_CARD]
+    kind: Annotated[str, SAID, "Form of the law, by its name in pipeline/core/laws.py."]
+    unit: Annotated[str, UNIT, "SI unit of y."]
+    argument: Annotated[str, SAID, "What x is."]
+    argument_unit: Annotated[str, SAID, "SI unit of x."]
+    coefficients: Annotated[
+        tuple[float, ...],
+        array(NUMBER, 1),
+        "As the form takes them; a polynomial has its lowest order first.",
+    ]
+    covariance: Annotated[
+        tuple[tuple[float, ...], ...],
+        array(array(NUMBER, 1), 1),
+        "Covariance matrix of the coefficients, row by row.",
+    ]
+    valid: Annotated[tuple[float, float], "Range of x in which the law holds."]
+    parts: Annotated[
+        tuple[int, ...],
+        array(COUNT),
+        "Lengths of the polynomials, in a form that has several; else empty.",
+    ] = ()
+    rates: Annotated[
+        tuple[float, float] | None,
+        Mark.ALWAYS,
+        "Range of shear rates (1/s) in which the law holds; null for a form without a rate.",
+    ] = None
+    degrees_of_freedom: Annotated[
+        float | None, Mark.ALWAYS, "Of the covariance; null where it counts as known."
+    ] = None
     conditions: Mapping[str, Condition]
-    method: str
-    origins: tuple[Origin, ...] = ()
-    flags: tuple[Flag, ...] = ()
+    campaign: Annotated[str, ID, Mark.IN_FRONT]
+    method: Annotated[str, SAID, "Estimator and range in words."]
     diagnostics: Mapping[str, Detail] = field(default_factory=dict)
-    parts: tuple[int, ...] = ()
-    rates: tuple[float, float] | None = None
-    degrees_of_freedom: float | None = None
+    flags: tuple[Flag, ...] = ()
+    origins: tuple[Origin, ...] = ()
+
+    @property
+    def symbol(self) -> Annotated[str, After("key"), Mark.NO_COLUMN]:
+        """Symbol of y in figures."""
+        return property_key(self.key).symbol
 
     def __call__(self, x: float, rate_per_s: float | None = None) -> Quantity:
         """Evaluate the law at x `[argument_unit]` and, where it has one, a shear rate `[1/s]`."""

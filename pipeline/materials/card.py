@@ -5,55 +5,87 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import KW_ONLY, dataclass, replace
 from functools import partial
 from itertools import pairwise
 from operator import itemgetter
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Annotated, Any, ClassVar, TypeVar
 
-from deamat.core.errors import MissingProperty
+from deamat.core.errors import CardError, MissingProperty
+from deamat.core.kinds import CONDITIONS_KIND, ID, SAID, Kind
 from deamat.core.present import readable_record
 from deamat.core.quantity import Quantity
 from deamat.core.records import Condition, Law, PropertyRecord, Refusal
+from deamat.core.schema import (
+    After,
+    Called,
+    Entry,
+    Field,
+    check_names,
+    document_of,
+    fields_of,
+    maker,
+    read,
+)
 from deamat.materials import document as doc
-from deamat.materials.document import CardError, Document
+from deamat.materials.document import Document
 from deamat.materials.select import choose, refusal_reasons
 
 E = TypeVar("E", PropertyRecord, Law)
+
+
+SCHEMA = "urn:deamat:card:1"
 
 
 @dataclass(frozen=True, slots=True)
 class Credit:
     """Where a campaign's data come from and on which terms they may be used."""
 
-    campaign: str
+    ENTRY: ClassVar = Entry("campaign", "campaigns", identity=("material", "campaign"))
+
+    campaign: Annotated[str, ID, "Its folder under raw/."]
     title: str
     laboratory: str
     licence: str
-    source: str
-    synthetic: bool
+    source: Annotated[str, "Article or address, empty if there is none."]
+    synthetic: Annotated[bool, "True if it is simulated."]
 
 
 @dataclass(frozen=True, slots=True)
 class MaterialCard:
-    """Records, laws and refusals of one material; `card["compressive_modulus"]` is a `Quantity`.
+    """Records, laws and refusals of one material; `card["compressive_modulus"]` is a `Quantity`."""
 
-    Parameters
-    ----------
-    material, name : id and the name that people read
-    synthetic : true if any campaign behind it is simulated
-    records, laws, refusals : from all campaigns, side by side
-    campaigns : whom to thank and on which terms
-    """
+    ENTRY: ClassVar = Entry(
+        "card",
+        "materials",
+        "Everything that is known of one soft dielectric elastomer, with uncertainty, conditions "
+        "and origin of every value, and what was refused. All numbers are in SI units.",
+        identity=("material",),
+    )
 
-    material: str
-    name: str
-    synthetic: bool
-    records: tuple[PropertyRecord, ...]
-    laws: tuple[Law, ...] = ()
-    refusals: tuple[Refusal, ...] = ()
-    campaigns: tuple[Credit, ...] = ()
+    material: Annotated[str, ID, "Identifier of the material, as in the registers and file names."]
+    name: Annotated[str, SAID, "Name that people read."]
+    synthetic: Annotated[
+        bool,
+        "True if any of the campaigns is simulated: then the card holds no pure measurement.",
+    ]
+    _: KW_ONLY
+    campaigns: Annotated[
+        tuple[Credit, ...], "Where the data come from and on which terms they may be used."
+    ] = ()
+    records: Annotated[
+        tuple[PropertyRecord, ...],
+        Called("properties"),
+        "One entry for each property key, set of conditions and campaign; they stand side by side "
+        "and are never pooled silently.",
+    ]
+    laws: Annotated[tuple[Law, ...], "Fitted functions."] = ()
+    refusals: Annotated[
+        tuple[Refusal, ...],
+        Called("refused"),
+        "Values that were asked for and not given, and why.",
+    ] = ()
 
     def keys(self) -> tuple[str, ...]:
         """Property keys that have a value, sorted."""
@@ -150,23 +182,20 @@ class MaterialCard:
         `release` is the first 12 hex digits of the sha256 of everything else in it: two cards
         with the same release say the same thing.
         """
-        card = self.canonical()
-        content: Document = {
-            "schema": doc.SCHEMA,
-            "material": card.material,
-            "name": card.name,
-            "synthetic": card.synthetic,
-            "release": "",
-            "campaigns": [asdict(c) for c in card.campaigns],
-            "properties": [doc.record_document(r) for r in card.records],
-            "laws": [doc.law_document(law) for law in card.laws],
-            "refused": [doc.refusal_document(r) for r in card.refusals],
-        }
+        content = {"schema": SCHEMA, **document_of(self.canonical(), release="")}
         content["release"] = _digest(content)
         return content
 
     @property
-    def release(self) -> str:
+    def release(
+        self,
+    ) -> Annotated[
+        str,
+        Kind({"type": "string", "pattern": "^[0-9a-f]{12}$"}, "TEXT"),
+        After("synthetic"),
+        "First 12 hex digits of the sha256 of this object without this field, as JSON on one line "
+        "with sorted keys, no blanks, UTF-8. Two cards with the same release say the same thing.",
+    ]:
         """First 12 hex digits of the sha256 of the content: what the card's document says."""
         return str(self.to_document()["release"])
 
@@ -184,32 +213,24 @@ class MaterialCard:
         CardError : another schema, a missing or unknown field, or a content that is not the one
             its `release` was made of
         """
-        if "schema" not in document or document["schema"] != doc.SCHEMA:
-            raise CardError(f"not a card of schema {doc.SCHEMA}, the only one this program reads")
-        _, material, name, synthetic, release, *lists = doc.take(document, _FIELDS, "the card")
-        if release != _digest(document):
+        content = dict(document)
+        if content.pop("schema", None) != SCHEMA:
+            raise CardError(f"not a card of schema {SCHEMA}, the only one this program reads")
+        check_names(cls, content)
+        if content["release"] != _digest(document):
             raise CardError(
-                f"its content is that of release {_digest(document)}, not of {release} as it says: "
-                "it was changed after it was written; take the original card"
+                f"its content is that of release {_digest(document)}, not of {content['release']} "
+                "as it says: it was changed after it was written; take the original card"
             )
-        campaigns, properties, laws, refused = lists
-        return cls(
-            *(material, name, synthetic),
-            records=doc.read_entries(properties, partial(doc.record_from, material), "properties"),
-            laws=doc.read_entries(laws, partial(doc.law_from, material), "laws"),
-            refusals=doc.read_entries(refused, partial(doc.refusal_from, material), "refused"),
-            campaigns=doc.read_entries(campaigns, _credit_from, "campaigns"),
-        )
+        stored = [f for f in fields_of(cls) if not f.derived]
+        return maker(cls, stored)([_value(field, content) for field in stored])
 
 
-_FIELDS = (
-    *("schema", "material", "name", "synthetic", "release"),
-    *("campaigns", "properties", "laws", "refused"),
-)
-
-
-def _credit_from(document: Mapping[str, Any]) -> Credit:
-    return Credit(*doc.take(document, [f.name for f in fields(Credit)], "a campaign"))
+def _value(field: Field, content: Mapping[str, Any]) -> Any:
+    told, cls = content[field.name], field.kind.rows_of
+    if cls is None:
+        return field.kind.read(told)
+    return doc.read_entries(told, partial(read, cls, material=content["material"]), field.name)
 
 
 def _digest(document: Mapping[str, Any]) -> str:
@@ -223,7 +244,7 @@ def _there(entries: Sequence[PropertyRecord | Law]) -> str:
 
 def _identity(entry: PropertyRecord | Law) -> tuple[str, str, str]:
     """Give what tells an entry from the others of its card."""
-    conditions = doc.canonical_json(doc.conditions_document(entry.conditions))
+    conditions = doc.canonical_json(CONDITIONS_KIND.write(entry.conditions))
     return entry.key, entry.campaign, conditions
 
 
@@ -236,7 +257,7 @@ def _in_order(entries: Iterable[E]) -> tuple[E, ...]:
 
 
 def _refusal_order(refusal: Refusal) -> tuple[str, str, str, str]:
-    rest = doc.canonical_json(doc.refusal_document(refusal))
+    rest = doc.canonical_json(document_of(refusal))
     return refusal.key, refusal.campaign, refusal.specimen or "", rest
 
 

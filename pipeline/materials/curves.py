@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import PipelineError
-from deamat.core.records import Measurement
+from deamat.core.records import Measurement, Specimen
+from deamat.core.schema import labels_of
 from deamat.core.units import known, si_factor
 
 if TYPE_CHECKING:
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 IntArray = NDArray[np.int64]
 
 VERSION = 1
-LABELS = ("specimen", "material", "campaign", "technique")
+LABELS = labels_of(Specimen)  # name to attribute of the specimen
 _RESERVED = frozenset({*LABELS, "synthetic", "of_curve", "curve", "sample"})
 
 
@@ -106,7 +107,7 @@ def _order(m: Measurement) -> tuple[str, str, str, str, int, str]:
 
 
 def _label(m: Measurement, label: str) -> str:
-    return str(getattr(m.specimen, "id" if label == "specimen" else label))
+    return str(getattr(m.specimen, LABELS[label]))
 
 
 def _check(measurement: Measurement) -> None:

@@ -10,23 +10,27 @@ import json
 import sqlite3
 import weakref
 from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
 from itertools import count
 from os import PathLike
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
-from deamat.core.errors import PipelineError
+from deamat.core.errors import CardError, PipelineError
 from deamat.core.ledger import FileEntry, Provenance
-from deamat.materials.card import Credit, MaterialCard
-from deamat.materials.document import CardError
-from deamat.materials.rows import laws_of, owned_of, records_of, refusals_of
+from deamat.core.schema import entry_of
+from deamat.materials.card import MaterialCard
+from deamat.materials.rows import card_of, columns_of, entries_of, owned_of
 from deamat.materials.tables import (
     APPLICATION_ID,
+    ENTRIES,
+    OWNED,
     TABLES,
     VERSION,
     card_rows,
     file_rows,
+    listed_in,
     provenance_rows,
 )
 
@@ -40,10 +44,27 @@ DATABASE_FILE = "materials.sqlite"
 CURVES_FILE = "curves.h5"
 
 _SHOWN = 8  # materials that a message names
-_OWNED = (
-    "SELECT * FROM {} WHERE id IN (SELECT id FROM properties WHERE material = ?1 "
-    "UNION ALL SELECT id FROM laws WHERE material = ?1) ORDER BY id, position"
-)
+
+
+@cache
+def _entry_query(cls: Any) -> str:
+    identity = entry_of(cls).identity
+    chosen = columns_of(cls) if identity else f"id, {columns_of(cls)}"
+    order = ", ".join(identity) or "id"
+    return f"SELECT {chosen} FROM {entry_of(cls).table} WHERE material = ?1 ORDER BY {order}"
+
+
+@cache
+def _owned_query(cls: Any) -> str:
+    owners = " UNION ALL ".join(
+        f"SELECT id FROM {entry_of(owner).table} WHERE material = ?1"
+        for owner in ENTRIES
+        if cls in (field.kind.rows_of for field in listed_in(owner))
+    )
+    return (
+        f"SELECT id, {columns_of(cls)} FROM {entry_of(cls).table} "
+        f"WHERE id IN ({owners}) ORDER BY id, position"
+    )
 
 
 class DatabaseError(PipelineError):
@@ -166,28 +187,17 @@ class Database(Mapping[str, MaterialCard]):
         MissingMaterial : the database does not hold it; the message names the nearest ones
         DatabaseError : the database was closed or is damaged
         """
-        found = self._rows("SELECT name, synthetic FROM materials WHERE material = ?", material)
-        if not found:
+        about = self._rows(
+            f"SELECT {columns_of(MaterialCard)} FROM materials WHERE material = ?", material
+        )
+        if not about:
             raise MissingMaterial(self._missing(material))
-        name, synthetic = found[0]
-        budgets, origins, flags = (
-            self._rows(_OWNED.format(table), material) for table in ("budgets", "origins", "flags")
-        )
-        records, laws, refusals, campaigns = (
-            self._rows(f"SELECT * FROM {table} WHERE material = ? ORDER BY {order}", material)
-            for table, order in (
-                *(("properties", "id"), ("laws", "id"), ("refusals", "id")),
-                ("campaigns", "campaign"),
-            )
-        )
-        owned = owned_of(budgets, origins, flags)
-        return MaterialCard(
-            *(material, name, bool(synthetic)),
-            records=records_of(records, owned),
-            laws=laws_of(laws, owned),
-            refusals=refusals_of(refusals),
-            campaigns=tuple(Credit(*(*row[1:-1], bool(row[-1]))) for row in campaigns),
-        )
+        owned = {cls: owned_of(cls, self._rows(_owned_query(cls), material)) for cls in OWNED}
+        lists = {
+            cls: entries_of(cls, self._rows(_entry_query(cls), material), owned, material=material)
+            for cls in ENTRIES
+        }
+        return card_of(about[0], lists)
 
     def _missing(self, material: str) -> str:
         held = list(self)
@@ -277,8 +287,8 @@ def open_database(path: str | PathLike[str]) -> Database:
         raise DatabaseError(f"{place} is SQLite, but not a database of materials")
     if version != VERSION:
         database.close()
-        mend = "make it again with `make all`" if version < VERSION else "use a newer deamat"
         raise DatabaseError(
-            f"{place} has version {version} of the tables, this program reads {VERSION}; {mend}"
+            f"{place} has other tables than those of this deamat; write it again with `make all`, "
+            "or read it with the deamat that wrote it"
         )
     return database

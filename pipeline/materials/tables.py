@@ -1,24 +1,27 @@
-"""The tables of `materials.sqlite`, and how cards become their rows and come back. SI throughout.
+"""The tables of `materials.sqlite`, and how a card becomes their rows. SI throughout; `rows` reads.
 
-The rows are made from the card's document, so that file and database cannot differ. Conditions,
-diagnostics, coefficients and covariances are JSON text, for `json_extract`; NULL in an interval
-means that it is open there. The ids of `properties` and `laws` are unique over both, so that
-`origins` and `flags` serve either.
+Columns come from `core.schema`, rows from the card's document, so that file and database cannot
+differ. What is nested is JSON text, for `json_extract`; NULL in an interval means that it is open
+there. The ids of `properties` and `laws` are unique over both, so that `origins` and `flags` serve
+either.
 """
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterable, Iterator
 from dataclasses import astuple
+from functools import cache
 from typing import Any
 
 from deamat.core.ledger import FileEntry, Provenance
+from deamat.core.schema import Field, Mark, document_of, entry_of, fields_of
+from deamat.materials.card import MaterialCard
 from deamat.materials.document import Document, canonical_json
 
-VERSION = 1  # raise it with every change of the tables; kept as PRAGMA user_version
 APPLICATION_ID = 0x6465614D  # "deaM": tells our files from other SQLite databases
 
-TABLES = """
+_LEDGER = """
 CREATE TABLE release (
     id INTEGER PRIMARY KEY CHECK (id = 1),
     version TEXT NOT NULL, code TEXT NOT NULL,
@@ -29,73 +32,66 @@ CREATE TABLE files (
     status TEXT NOT NULL, manifest TEXT NOT NULL, reason TEXT NOT NULL,
     line INTEGER, "column" INTEGER
 ) STRICT, WITHOUT ROWID;
-CREATE TABLE materials (
-    material TEXT PRIMARY KEY, name TEXT NOT NULL, synthetic INTEGER NOT NULL,
-    release TEXT NOT NULL
-) STRICT, WITHOUT ROWID;
-CREATE TABLE campaigns (
-    material TEXT REFERENCES materials, campaign TEXT, title TEXT NOT NULL,
-    laboratory TEXT NOT NULL, licence TEXT NOT NULL, source TEXT NOT NULL,
-    synthetic INTEGER NOT NULL,
-    PRIMARY KEY (material, campaign)
-) STRICT, WITHOUT ROWID;
-CREATE TABLE properties (
-    id INTEGER PRIMARY KEY, material TEXT NOT NULL REFERENCES materials, key TEXT NOT NULL,
-    campaign TEXT NOT NULL, value REAL NOT NULL, unit TEXT NOT NULL,
-    standard_uncertainty REAL NOT NULL, u_independent REAL NOT NULL, u_shared REAL NOT NULL,
-    sd REAL, ci95_low REAL, ci95_high REAL, bound TEXT NOT NULL, n INTEGER NOT NULL,
-    conditions TEXT NOT NULL, method TEXT NOT NULL, diagnostics TEXT NOT NULL
-) STRICT;
-CREATE TABLE laws (
-    id INTEGER PRIMARY KEY, material TEXT NOT NULL REFERENCES materials, key TEXT NOT NULL,
-    campaign TEXT NOT NULL, kind TEXT NOT NULL, unit TEXT NOT NULL, argument TEXT NOT NULL,
-    argument_unit TEXT NOT NULL, coefficients TEXT NOT NULL, covariance TEXT NOT NULL,
-    valid_low REAL NOT NULL, valid_high REAL NOT NULL, parts TEXT NOT NULL,
-    rates_low REAL, rates_high REAL, degrees_of_freedom REAL,
-    conditions TEXT NOT NULL, method TEXT NOT NULL, diagnostics TEXT NOT NULL
-) STRICT;
-CREATE TABLE refusals (
-    id INTEGER PRIMARY KEY, material TEXT NOT NULL REFERENCES materials, key TEXT NOT NULL,
-    reason TEXT NOT NULL, campaign TEXT NOT NULL, specimen TEXT,
-    conditions TEXT NOT NULL, diagnostics TEXT NOT NULL
-) STRICT;
-CREATE TABLE budgets (
-    id INTEGER REFERENCES properties, position INTEGER,
-    source TEXT NOT NULL, u REAL NOT NULL, shared INTEGER NOT NULL,
-    PRIMARY KEY (id, position)
-) STRICT, WITHOUT ROWID;
-CREATE TABLE origins (
-    id INTEGER, position INTEGER, specimen TEXT NOT NULL,
-    value REAL NOT NULL, u_independent REAL NOT NULL, u_shared REAL NOT NULL,
-    register TEXT NOT NULL, register_line INTEGER NOT NULL, path TEXT, sha256 TEXT,
-    first_line INTEGER, last_line INTEGER, reader TEXT, technique TEXT NOT NULL,
-    diagnostics TEXT NOT NULL,
-    PRIMARY KEY (id, position)
-) STRICT, WITHOUT ROWID;
-CREATE TABLE flags (
-    id INTEGER, position INTEGER, name TEXT NOT NULL, detail TEXT NOT NULL,
-    PRIMARY KEY (id, position)
-) STRICT, WITHOUT ROWID;
-CREATE INDEX properties_of_material ON properties (material, key);
-CREATE INDEX laws_of_material ON laws (material, key);
-CREATE INDEX refusals_of_material ON refusals (material, key);
 """
-
-# Fields of a card's entries, in the order of the columns behind `material`.
-_PROPERTY_CELLS = (
-    *("key", "campaign", "value", "unit", "standard_uncertainty", "u_independent", "u_shared"),
-    *("sd", "ci95", "bound", "n", "conditions", "method", "diagnostics"),
-)
-_LAW_CELLS = (
-    *("key", "campaign", "kind", "unit", "argument", "argument_unit", "coefficients"),
-    *("covariance", "valid", "parts", "rates", "degrees_of_freedom"),
-    *("conditions", "method", "diagnostics"),
-)
-_REFUSAL_CELLS = ("key", "reason", "campaign", "specimen", "conditions", "diagnostics")
-_INTERVALS = frozenset({"ci95", "valid", "rates"})
 
 Cell = str | float | int | None
 Row = tuple[Cell, ...]
+
+
+def listed_in(cls: Any) -> tuple[Field, ...]:
+    """Give the fields of a class that have rows in a table of their own."""
+    return tuple(field for field in fields_of(cls) if field.kind.rows_of is not None)
+
+
+@cache
+def stored_fields(cls: Any) -> tuple[Field, ...]:
+    """Give the fields of a class that have columns, in the order of these."""
+    listed = [field for field in fields_of(cls) if field.columns]
+    return tuple(sorted(listed, key=lambda field: Mark.IN_FRONT not in field.marks))
+
+
+def _columns(cls: Any) -> list[str]:
+    made = []
+    for field in stored_fields(cls):
+        null = field.kind.nullable or field.kind.open_ended
+        kind = f"{field.kind.sql}{'' if null else ' NOT NULL'}"
+        made += [f"{column} {kind}" for column in field.columns]
+    return made
+
+
+def _table(cls: Any, *before: str) -> str:
+    entry, columns = entry_of(cls), [*before, *_columns(cls)]
+    if entry.identity:
+        columns.append(f"PRIMARY KEY ({', '.join(entry.identity)})")
+    rowid = ", WITHOUT ROWID" if entry.identity else ""
+    return f"CREATE TABLE {entry.table} (\n    {', '.join(columns)}\n) STRICT{rowid};\n"
+
+
+def _entry_table(cls: Any) -> str:
+    material = "material TEXT NOT NULL REFERENCES materials"
+    if entry_of(cls).identity:
+        return _table(cls, material)
+    index = "CREATE INDEX {0}_of_material ON {0} (material, key);\n"
+    return _table(cls, "id INTEGER PRIMARY KEY", material) + index.format(entry_of(cls).table)
+
+
+def _owned_table(cls: Any) -> str:
+    columns = ["id INTEGER", "position INTEGER", *_columns(cls), "PRIMARY KEY (id, position)"]
+    table = entry_of(cls).table
+    return f"CREATE TABLE {table} (\n    {', '.join(columns)}\n) STRICT, WITHOUT ROWID;\n"
+
+
+ENTRIES = tuple(field.kind.rows_of for field in listed_in(MaterialCard))
+OWNED = tuple(dict.fromkeys(field.kind.rows_of for cls in ENTRIES for field in listed_in(cls)))
+TABLES = "".join(
+    [_LEDGER, _table(MaterialCard), *map(_entry_table, ENTRIES), *map(_owned_table, OWNED)]
+)
+
+# Kept as PRAGMA user_version: it changes with the tables, and nobody has to think of it.
+VERSION = int.from_bytes(hashlib.sha256(TABLES.encode()).digest()[:4]) >> 1
+
+
+# --- rows
 
 
 def provenance_rows(provenance: Provenance) -> list[Row]:
@@ -119,40 +115,28 @@ def card_rows(card: Document, ids: Iterator[int]) -> Iterator[tuple[str, Row]]:
     card : as `MaterialCard.to_document` writes it
     ids : numbers for properties, laws and refusals, not used before
     """
-    material = card["material"]
-    yield "materials", (material, card["name"], card["synthetic"], card["release"])
-    for credit in card["campaigns"]:
-        yield "campaigns", (material, *credit.values())
-    for record in card["properties"]:
-        number = next(ids)
-        yield "properties", (number, material, *_cells(record, _PROPERTY_CELLS))
-        for position, line in enumerate(record["budget"]):
-            yield "budgets", (number, position, *line.values())
-        yield from _owned_rows(record, number)
-    for law in card["laws"]:
-        number = next(ids)
-        yield "laws", (number, material, *_cells(law, _LAW_CELLS))
-        yield from _owned_rows(law, number)
-    for refusal in card["refused"]:
-        yield "refusals", (next(ids), material, *_cells(refusal, _REFUSAL_CELLS))
+    yield entry_of(MaterialCard).table, tuple(_cells(card, MaterialCard))
+    for field in listed_in(MaterialCard):
+        cls = field.kind.rows_of
+        for entry in card[field.name]:
+            number = () if entry_of(cls).identity else (next(ids),)
+            yield entry_of(cls).table, (*number, card["material"], *_cells(entry, cls))
+            for owned in listed_in(cls):
+                yield from _owned_rows(owned.kind.rows_of, entry[owned.name], *number)
 
 
-def _owned_rows(entry: Document, number: int) -> Iterator[tuple[str, Row]]:
-    for position, origin in enumerate(entry["origins"]):
-        yield "origins", (number, position, *map(_cell, origin.values()))
-    for position, flag in enumerate(entry["flags"]):
-        name, _, detail = flag.partition(": ")
-        yield "flags", (number, position, name, detail)
+def _owned_rows(cls: Any, entries: Iterable[Any], number: int) -> Iterator[tuple[str, Row]]:
+    entry = entry_of(cls)
+    for position, told in enumerate(entries):
+        document = document_of(cls.from_text(told)) if entry.as_text else told
+        yield entry.table, (number, position, *_cells(document, cls))
 
 
-def _cells(entry: Document, names: Iterable[str]) -> Iterator[Cell]:
-    """Flatten an entry: an interval gives two cells, what is nested becomes JSON text."""
-    for name in names:
-        if name in _INTERVALS:
-            yield from entry[name] or (None, None)
+def _cells(document: Document, cls: Any) -> Iterator[Cell]:
+    """Flatten an object: an interval gives two cells, what is nested becomes JSON text."""
+    for field in stored_fields(cls):
+        value = document.get(field.name)
+        if len(field.columns) > 1:
+            yield from value or (None,) * len(field.columns)
         else:
-            yield _cell(entry[name])
-
-
-def _cell(value: Any) -> Cell:
-    return canonical_json(value) if isinstance(value, dict | list) else value
+            yield canonical_json(value) if isinstance(value, dict | list) else value

@@ -21,9 +21,10 @@ from deamat.core.present import (
 from deamat.core.properties import property_key
 from deamat.core.quantity import Contribution, Quantity
 from deamat.core.records import Condition, Detail, Law, Origin, PropertyRecord, Refusal
+from deamat.core.schema import document_of
 from deamat.materials.card import MaterialCard
 from deamat.materials.database import Database
-from deamat.materials.document import Document, law_document, record_document, refusal_document
+from deamat.materials.document import Document
 from deamat.materials.present import credit_text, law_text, synthetic_lines, title
 
 Entry = PropertyRecord | Law
@@ -126,10 +127,8 @@ def _document(trace: Trace) -> Document:
         "release": card.release,
         "key": trace.key,
         "property": _record_document(entry) if isinstance(entry, PropertyRecord) else None,
-        "law": law_document(entry) if isinstance(entry, Law) else None,
-        "refused": [
-            {**refusal_document(r), "places": _refusal_places(r, card)} for r in trace.refusals
-        ],
+        "law": document_of(entry) if isinstance(entry, Law) else None,
+        "refused": [{**document_of(r), "places": _refusal_places(r, card)} for r in trace.refusals],
         "code": {"version": provenance.version, "digest": provenance.code},
         "stages": dict(provenance.stages),
         "config": dict(provenance.config),
@@ -137,7 +136,7 @@ def _document(trace: Trace) -> Document:
 
 
 def _record_document(record: PropertyRecord) -> Document:
-    document = record_document(record)
+    document = document_of(record)
     shares = percent_of_variance(record.budget)
     for line, share in zip(document["budget"], shares, strict=True):
         line["percent_of_variance"] = share

@@ -48,8 +48,9 @@ def record(
     )  # fmt: skip
     u = quantity.standard_uncertainty
     return PropertyRecord(
-        key, material, CAMPAIGN, quantity, n, None, (value - 2 * u, value + 2 * u),
-        {**STATE, **conditions}, "made by hand", lines, (origin,),
+        key=key, material=material, campaign=CAMPAIGN, quantity=quantity, n=n, sd=None,
+        ci95=(value - 2 * u, value + 2 * u), conditions={**STATE, **conditions},
+        method="made by hand", budget=lines, origins=(origin,),
         diagnostics={"area_ratio_limit": 10.0} if "electrode_area_m2" in conditions else {},
     )  # fmt: skip
 
@@ -83,7 +84,7 @@ def card(
             record(material, "weibull_shape", shape, "1", (0.1, 0.0), 20, more),
         ]
     credit = Credit(CAMPAIGN, "Made by hand", "nobody", "CC BY 4.0", "tests", synthetic)
-    return MaterialCard(material, material, synthetic, tuple(records), campaigns=(credit,))
+    return MaterialCard(material, material, synthetic, records=tuple(records), campaigns=(credit,))
 
 
 def cards(*, synthetic: bool = False, breakdown: bool = True) -> dict[str, MaterialCard]:

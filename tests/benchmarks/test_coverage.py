@@ -99,17 +99,17 @@ def test_no_limit_of_the_viscosity_then_lies_beyond_the_truth_too_often(
 
 def test_a_property_of_which_no_truth_is_told_stops_the_study() -> None:
     record = PropertyRecord(
-        "mass_density",
-        "x",
-        "c",
-        Quantity(1000.0, "kg/m3"),
-        1,
-        None,
-        (990.0, 1010.0),
-        {},
-        "",
-        (),
-        (),
+        key="mass_density",
+        material="x",
+        campaign="c",
+        quantity=Quantity(1000.0, "kg/m3"),
+        n=1,
+        sd=None,
+        ci95=(990.0, 1010.0),
+        conditions={},
+        method="",
+        budget=(),
+        origins=(),
     )
     message = "the twin tells no truth of mass_density of x ({}); let its part state one"
     with pytest.raises(MissingProperty, match=f"^{re.escape(message)}$"):

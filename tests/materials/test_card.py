@@ -8,11 +8,10 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 
-from deamat.core.errors import MissingProperty
+from deamat.core.errors import CardError, MissingProperty
 from deamat.core.quantity import Quantity
 from deamat.core.records import Flag
 from deamat.materials.card import MaterialCard, read_card
-from deamat.materials.document import CardError
 from tests.materials import samples
 from tests.materials.samples import aged, card, modulus, refusal, viscosity_law
 
@@ -217,7 +216,7 @@ def test_an_edited_card_is_refused(tmp_path: Path) -> None:
     ("text", "message"),
     [
         (b'{"schema": "urn:deamat:card:2"}', "not a card of schema urn:deamat:card:1"),
-        (b'{"schema": "urn:deamat:card:1"}', "the card: lacks campaigns, laws, material"),
+        (b'{"schema": "urn:deamat:card:1"}', "a card: lacks campaigns, laws, material"),
         (b"[]", "not a card: a card is one JSON object"),
         (b"{", "not JSON: Expecting property name"),
         (b"\xff", "not JSON: 'utf-8' codec can't decode"),
@@ -263,7 +262,7 @@ def test_a_lower_bound_is_never_given_as_a_bare_number() -> None:
         key="handling_time", quantity=Quantity(43200.0, "s"), ci95=(43200.0, math.inf),
         bound="lower",
     )  # fmt: skip
-    card = MaterialCard(known.material, "Gel", False, (known,))
+    card = MaterialCard(known.material, "Gel", False, records=(known,))
     with pytest.raises(MissingProperty, match=r"handling_time of .* is only known to be >= 12 h"):
         card["handling_time"]
     assert card.record("handling_time").quantity.value == 43200.0

@@ -25,8 +25,17 @@ def record(
     **conditions: Condition,
 ) -> PropertyRecord:
     return PropertyRecord(
-        *(key, material, campaign, Quantity(value, property_key(key).unit, u), 5, None),
-        *(ci95 or (value - 2 * u, value + 2 * u), conditions, "by hand", (), ()),
+        key=key,
+        material=material,
+        campaign=campaign,
+        quantity=Quantity(value, property_key(key).unit, u),
+        n=5,
+        sd=None,
+        ci95=ci95 or (value - 2 * u, value + 2 * u),
+        conditions=conditions,
+        method="by hand",
+        budget=(),
+        origins=(),
     )
 
 
@@ -36,8 +45,18 @@ def law(key: str, coefficients: tuple[float, ...], material: str, kind: str = "p
     covariance = [[0.0] * len(c) for _ in c]
     covariance[0][0] = (0.01 * c[0]) ** 2
     return Law(
-        *(key, material, TWIN.campaign, kind, property_key(key).unit, "time since mixing", "s"),
-        *(c, tuple(map(tuple, covariance)), (3600.0, 43200.0), {}, "by hand"),
+        key=key,
+        material=material,
+        campaign=TWIN.campaign,
+        kind=kind,
+        unit=property_key(key).unit,
+        argument="time since mixing",
+        argument_unit="s",
+        coefficients=c,
+        covariance=tuple(map(tuple, covariance)),
+        valid=(3600.0, 43200.0),
+        conditions={},
+        method="by hand",
     )
 
 
