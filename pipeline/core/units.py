@@ -66,6 +66,7 @@ UNITS: dict[str, tuple[str, float, float]] = {
     "N.m": ("N.m", 1.0, 0.0),
     "mN.m": ("N.m", 1e-3, 0.0),
     "uN.m": ("N.m", 1e-6, 0.0),
+    "Nm": ("N.m", 1.0, 0.0),
     "mNm": ("N.m", 1e-3, 0.0),
     "uNm": ("N.m", 1e-6, 0.0),
     "mrad": ("rad", 1e-3, 0.0),

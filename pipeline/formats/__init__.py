@@ -1,7 +1,7 @@
 """One file per instrument export: bytes in, a Recording in SI out.
 
-To add a format: write `formats/<module>.py` with the headings Usage, Format, Uncertainties and
-Metadata in its docstring and one `FORMAT = Format(...)`, and add its line below. Its recogniser
+To add a format: write `formats/<module>.py` with the headings Usage, Format, Columns, Uncertainties
+and Metadata in its docstring and one `FORMAT = Format(...)`, and add its line below. Its recogniser
 must look at structure, cheaply, and must not accept what another one accepts: `detect` refuses a
 file that two formats claim. Most tables need only a layout (`header`) and a dialect (`cells`);
 `table.read_table` does the rest.

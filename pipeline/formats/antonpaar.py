@@ -10,6 +10,11 @@ Format
 `Shear Rate;Shear Stress;Viscosity;Speed;Torque`, then `[1/s];[Pa];[Pa.s];[1/min];[uNm]` (with a
 middle dot and a micro sign, in UTF-8 or Latin-1), then rows with decimal commas; CRLF or LF.
 
+Columns
+-------
+`shear_rate_per_s [1/s]`, `shear_stress_Pa [Pa]`, `viscosity_Pas [Pa.s]`, `torque_Nm [N.m]`. Every
+further column stands under its own label with its SI unit.
+
 Uncertainties
 -------------
 None in the file.

@@ -13,6 +13,11 @@ decimal points, which may stand in double quotes and then carry THOUSANDS COMMAS
 and a preload is not zeroed; both are delivered as they stand. Of several extensions or loads
 (`Extension`, `Compressive extension`) the plain one is `displacement_m` or `force_N`.
 
+Columns
+-------
+`time_s [s]`, `displacement_m [m]`, `force_N [N]`, as far as the file has them. Every further column
+stands under its own label with its SI unit.
+
 Uncertainties
 -------------
 None in the file.

@@ -15,6 +15,14 @@ overloaded) and 4 (level not held) are not: such points are kept as written (9.9
 the column `over_range`. The meter itself saves no frequency with its data, so this is a log made
 on a PC.
 
+Columns
+-------
+`frequency_Hz [Hz]`, `over_range [1]` (1 where the meter calls a point no measurement, else 0), and
+two columns that the function decides: `parallel_capacitance_F [F]` or `series_capacitance_F [F]`
+with `loss_tangent [1]`, `parallel_resistance_ohm [ohm]` or `series_resistance_ohm [ohm]`;
+`series_resistance_ohm [ohm]` with `reactance_ohm [ohm]`; `impedance_ohm [ohm]` with
+`phase_rad [rad]`.
+
 Uncertainties
 -------------
 None in the file. The meter's limits of error stand in `config/instruments.toml`.

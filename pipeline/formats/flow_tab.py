@@ -10,6 +10,11 @@ Format
 decimal points; CRLF or LF. A file that leaves the units out is read in 1/s and Pa.s, and flagged.
 Units with a middle dot or a degree sign may be in Mac OS Roman, as some exports were.
 
+Columns
+-------
+`point_no [1]`, `shear_rate_per_s [1/s]`, `viscosity_Pas [Pa.s]`, `temperature_K [K]`, as far as the
+file has them. Every further column stands under its own label with its SI unit.
+
 Uncertainties
 -------------
 None in the file.

@@ -14,6 +14,11 @@ each channel is: `# channel 1: voltage monitor, 2000 V/V`, `# channel 2: current
 2e-3 A/V`. Both are multiplied out; a channel that nothing is said of is an error, never a guess.
 A plain table names `voltage_V` or `voltage_kV` and, if there was one, `current_uA`.
 
+Columns
+-------
+`time_s [s]`, `voltage_V [V]`, and `current_A [A]` if it was logged; monitors are multiplied out.
+Every further column stands under its own label with its SI unit.
+
 Uncertainties
 -------------
 None in the file. What the voltage monitor is good for stands in `config/instruments.toml`.

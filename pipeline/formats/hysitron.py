@@ -15,6 +15,11 @@ labels as the quantities: they become `depth_signal_V` and `load_signal_V`. Dept
 are negative where the software took the surface for zero, and are delivered as they stand. The
 stated number of points is held against the rows: a cut between two lines would not show otherwise.
 
+Columns
+-------
+`depth_m [m]`, `force_N [N]`, `time_s [s]`, and the raw signals `depth_signal_V [V]` and
+`load_signal_V [V]`.
+
 Uncertainties
 -------------
 None in the file; six decimals are printed whatever the transducer resolves.

@@ -14,6 +14,14 @@ one of the pairs `Cp,D`, `Cp,Rp`, `Cs,D`, `Cs,Rs`, `R,X`, `Z,theta`; each carrie
 refused: it may be in parallel or in series. A last column `status` may say `OK`, `OUT` or `OVER`.
 Readings of 9.9E37 or beyond are kept as written and marked in the column `over_range`.
 
+Columns
+-------
+`frequency_Hz [Hz]`, `over_range [1]` (1 where the meter calls a point no measurement, else 0), and
+two columns that the function decides: `parallel_capacitance_F [F]` or `series_capacitance_F [F]`
+with `loss_tangent [1]`, `parallel_resistance_ohm [ohm]` or `series_resistance_ohm [ohm]`;
+`series_resistance_ohm [ohm]` with `reactance_ohm [ohm]`; `impedance_ohm [ohm]` with
+`phase_rad [rad]`.
+
 Uncertainties
 -------------
 None in the file. The meter's limits of error stand in `config/instruments.toml`.

@@ -11,6 +11,10 @@ labels (`Reading`, `Load`, `Travel`, `Time`, parted by tabs), then rows of decim
 CRLF. The unit of the load and of the travel stand in the header; the time is in seconds and the
 reading is a running number, which the exporter does not write: the metadata say so.
 
+Columns
+-------
+`reading [1]`, `force_N [N]`, `displacement_m [m]`, `time_s [s]`.
+
 Uncertainties
 -------------
 None in the file. The load is printed with the gauge's resolution, so its last digit bounds it.

@@ -12,6 +12,11 @@ labels with their units (`Time (s)`, `Crosshead (mm)`, `Load (kN)`) or a row of 
 of units, then rows of decimal-comma numbers. A decimal point is an error: it could be a thousands
 separator. The load is in kN.
 
+Columns
+-------
+`time_s [s]`, `displacement_m [m]`, `force_N [N]`, as far as the file has them. Every further column
+stands under its own label with its SI unit.
+
 Uncertainties
 -------------
 None in the file. A load in kN with four decimals resolves 0.1 N, coarse for soft specimens.

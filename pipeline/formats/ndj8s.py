@@ -12,6 +12,13 @@ the time of day alone, which goes on past midnight. `EEEE` in place of the visco
 `----` below zero: such readings are left out and their lines named. `-.-` means no probe, and so
 does a temperature below absolute zero (-327.67).
 
+Columns
+-------
+`viscosity_Pas [Pa.s]`, `line [1]` (of the file), the time as the stamps are written: `utc_s [s]`
+(with an offset) or `local_clock_s [s]` (without), both since 1970, or `time_of_day_s [s]` since
+midnight, and `rotor [1]`, `speed_rpm [rpm]`, `torque [1]` (of full scale), `temperature_K [K]`; the
+last only where every reading has it.
+
 Uncertainties
 -------------
 None in the file. Viscosity is printed to 1 mPa.s, torque to 0.1 %.

@@ -10,6 +10,11 @@ Format
 UTF-16 text with its byte order mark (UTF-8 is read too), perhaps some `key: value` lines, the row
 of labels (`Load (N)`, `Machine Extension (mm)`), then rows of decimal-point numbers.
 
+Columns
+-------
+`time_s [s]`, `force_N [N]`, `displacement_m [m]`, as far as the file has them. Every further column
+stands under its own label with its SI unit.
+
 Uncertainties
 -------------
 None in the file. The machine extension holds the compliance of frame and load cell.

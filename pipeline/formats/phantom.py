@@ -14,6 +14,11 @@ rows of decimal-point numbers. In the set strain and stress are negative in comp
 load is positive; signs are delivered as they stand, `-0.000000` included. A note that states a
 unit for a column (`Load (kN);`) is held against the column.
 
+Columns
+-------
+`time_s [s]`, `displacement_m [m]`, `force_N [N]`, `nominal_strain [1]`, `nominal_stress_Pa [Pa]`,
+as far as the file has them. Every further column stands under its own label with its SI unit.
+
 Uncertainties
 -------------
 None in the file; six decimals are printed whatever the load cell resolves.

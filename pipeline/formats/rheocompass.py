@@ -12,6 +12,11 @@ bracketed units, then rows that start with a tab; decimal commas or points as th
 Columns of text with empty units (date of the start) are kept as metadata. The number of points that
 the header states must be there.
 
+Columns
+-------
+`shear_rate_per_s [1/s]`, `shear_stress_Pa [Pa]`, `time_s [s]`, `viscosity_Pas [Pa.s]` (stress over
+rate where the file has none, 0 at rest), and the rest under its own label, such as `punkt_nr [1]`.
+
 Uncertainties
 -------------
 None in the file.

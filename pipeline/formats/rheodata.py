@@ -10,6 +10,11 @@ One row per reading, several samples below each other; units stand in the labels
 The viscosity is stress over rate. What `dataset.yaml` adds (geometry, temperature, authors) is not
 needed to read the numbers, and is not read.
 
+Columns
+-------
+`shear_rate_per_s [1/s]`, `shear_stress_Pa [Pa]`, `viscosity_Pas [Pa.s]` (stress over rate),
+`sample [1]` (index into the samples), `line [1]` (of the file).
+
 Uncertainties
 -------------
 None in the file; many sets are digitised from print.

@@ -11,6 +11,11 @@ Format
 rate<TAB>Shear stress<TAB>Viscosity...` and its units, then rows with decimal points: one rate, and
 stress and viscosity of every sample.
 
+Columns
+-------
+`shear_rate_per_s [1/s]`, `shear_stress_Pa [Pa]`, `viscosity_Pas [Pa.s]`, `sample [1]` (index into
+the samples), `line [1]` (of the file); the samples below each other.
+
 Uncertainties
 -------------
 None in the file; three significant digits.

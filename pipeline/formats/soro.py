@@ -13,6 +13,12 @@ the row of labels (`Time (s);True Strain;True Stress (MPa);Engineering Strain;En
 (MPa)`), then rows of decimal-point numbers; CRLF or LF. The strain columns carry no unit: they
 are pure numbers, true = ln(1 + engineering); the metadata name each one read without a unit.
 
+Columns
+-------
+`time_s [s]`, `nominal_strain [1]`, `nominal_stress_Pa [Pa]`, `true_strain [1]`,
+`true_stress_Pa [Pa]`, as far as the file has them. Every further column stands under its own label
+with its SI unit.
+
 Uncertainties
 -------------
 None in the file. Strain is crosshead displacement over the gauge length, not an extensometer's.

@@ -15,6 +15,13 @@ stamp is that of the start and stands in every line while the time elapses since
 over-range and below zero; an empty cell or `-.-` of the others is not recorded, nor is a
 temperature below absolute zero (-327.67). An elapsed time below zero is refused.
 
+Columns
+-------
+`viscosity_Pas [Pa.s]`, `line [1]` (of the file), the time as the stamps are written: `utc_s [s]`
+(with an offset) or `local_clock_s [s]` (without), both since 1970, or `time_of_day_s [s]` since
+midnight (these also where a start is stamped), or `time_s [s]` since mixing; and `rotor [1]`,
+`speed_rpm [rpm]`, `torque [1]` (of full scale), `temperature_K [K]` where every reading has them.
+
 Uncertainties
 -------------
 None in the file.

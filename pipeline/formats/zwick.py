@@ -13,6 +13,11 @@ of unquoted decimal-point numbers with exponents of three digits (`1.46e-007`). 
 lost sensor writes exact zeros to the end: flagged, never dropped. An aborted export ends in a cut
 line, which is refused by its line.
 
+Columns
+-------
+`displacement_m [m]`, `force_N [N]`, and what else was exported under its own label, such as
+`specimen_width_m [m]`.
+
 Uncertainties
 -------------
 None in the file; six significant digits are printed.

@@ -13,7 +13,7 @@ _TO_PINT = {
     "kg/m3": "kg/m**3", "mm_per_min": "mm/min", "mm_per_s": "mm/s", "per_s": "1/s",
     "V_per_um": "V/um", "kV_per_mm": "kV/mm", "V_per_s": "V/s", "kV_per_s": "kV/s",
     "Pas": "Pa*s", "mPas": "mPa*s", "Pa.s": "Pa*s", "mPa.s": "mPa*s", "C": "degC", "sec": "s",
-    "N.m": "N*m", "mN.m": "mN*m", "uN.m": "uN*m", "mNm": "mN*m", "uNm": "uN*m", "Pa s": "Pa*s",
+    "N.m": "N*m", "Nm": "N*m", "mN.m": "mN*m", "uN.m": "uN*m", "mNm": "mN*m", "uNm": "uN*m", "Pa s": "Pa*s",
     "1/min": "rpm",
 }  # fmt: skip
 

@@ -102,7 +102,7 @@ def test_every_reader_documents_itself_under_the_same_headings(form: Format) -> 
     module = importlib.import_module(f"deamat.formats.{form.name}")
     assert module.FORMAT is form
     headings = re.findall(r"^(\w+)\n-+\n\S", module.__doc__ or "", re.MULTILINE)
-    assert headings == ["Usage", "Format", "Uncertainties", "Metadata"]
+    assert headings == ["Usage", "Format", "Columns", "Uncertainties", "Metadata"]
     assert form.title
 
 
