@@ -14,8 +14,8 @@ if TYPE_CHECKING:  # `as` says to type checkers that a name is exported
     from deamat.actuator.declared import Designs as Designs
     from deamat.actuator.declared import load_designs as load_designs
     from deamat.actuator.design import Design as Design
-    from deamat.actuator.design import Request as Request
     from deamat.actuator.design import design as design
+    from deamat.actuator.request import Request as Request
     from deamat.actuator.stack import Layer as Layer
     from deamat.actuator.stack import Stack as Stack
     from deamat.actuator.strain import pull_in_voltage as pull_in_voltage
@@ -47,7 +47,8 @@ _HOMES = {
     "deamat.actuator.beam": ("Beam", "actuate"),
     "deamat.actuator.compositions": ("compare", "pareto"),
     "deamat.actuator.declared": ("Designs", "load_designs"),
-    "deamat.actuator.design": ("Design", "Request", "design"),
+    "deamat.actuator.design": ("Design", "design"),
+    "deamat.actuator.request": ("Request",),
     "deamat.actuator.stack": ("Layer", "Stack"),
     "deamat.actuator.strain": ("pull_in_voltage",),
     "deamat.core.errors": (

@@ -142,12 +142,12 @@ def actuate(stack: Stack, voltage_V: Reals, in_plane: InPlane, thinning: bool = 
 
 
 def weight(beam: Beam, orientation: Orientation) -> Reals:
-    """Give the weight of a metre of the elongated strip; thinning moves no mass `[N/m]`."""
+    """Return the weight of a metre of the elongated strip; thinning moves no mass `[N/m]`."""
     return beam.mass_kg_m * orientation.gravity_m_s2 / (1.0 + beam.elongation)
 
 
 def curvature(beam: Beam, x_m: Reals, length_m: Reals, orientation: Orientation) -> Reals:
-    """Give the curvature along a strip that bends little, `kappa + w sin(a) (L - x)^2 / (2 B)`.
+    """Return the curvature along a strip that bends little, `kappa + w sin(a) (L - x)^2 / (2 B)`.
 
     Parameters
     ----------
@@ -169,7 +169,7 @@ def curvature(beam: Beam, x_m: Reals, length_m: Reals, orientation: Orientation)
 
 
 def deflection(beam: Beam, x_m: Reals, length_m: Reals, orientation: Orientation) -> Reals:
-    """Give the small-deflection shape, positive towards the first layer; as `curvature` otherwise.
+    """Return the small-deflection shape, positive towards the first layer; else as `curvature`.
 
     `w(x) = kappa x^2 / 2 + w sin(a) (6 L^2 x^2 - 4 L x^3 + x^4) / (24 B)` `[m]`
 
@@ -183,13 +183,13 @@ def deflection(beam: Beam, x_m: Reals, length_m: Reals, orientation: Orientation
 
 
 def displacement(beam: Beam, x_m: Reals, length_m: Reals) -> Reals:
-    """Give how far the films push a point along the strip, `u(x) = eps x` `[m]` (Eq. 13)."""
+    """Return how far the films push a point along the strip, `u(x) = eps x` `[m]` (Eq. 13)."""
     _check_position(x_m, length_m)
     return beam.elongation * x_m
 
 
 def neutral_axis(beam: Beam, curvature_per_m: Reals) -> Reals:
-    """Give the height above the bottom face at which nothing stretches, `zc - eps / kappa` `[m]`.
+    """Return the height above the bottom face at which nothing stretches, `zc - eps / kappa` `[m]`.
 
     It is infinite in a section that stretches without bending, and the centroid in one that does
     neither.
@@ -238,4 +238,4 @@ def _total(terms: Sequence[Reals], origin: int = 0) -> Reals:
 def _check_position(x_m: Reals, length_m: Reals) -> None:
     check("length_m", length_m)
     # A tip that was computed may lie a rounding beyond the length
-    within("x_m over length_m", x_m / length_m, 0.0, 1.0 + 1e-12, mend="it is off the strip")
+    within("x_m over length_m", x_m / length_m, 0.0, 1.0 + 1e-12, hint="it is off the strip")

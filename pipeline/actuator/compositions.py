@@ -5,34 +5,21 @@ Source: Sikulskyi et al. 2022, Figure 11 (one composition throughout, or mixed o
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from deamat.actuator.case import Bound, Cards, Case, choose_drive, design_case, highest_voltage
 from deamat.actuator.declared import Designs
-from deamat.actuator.design import Bound, Request, allowed_for, choose_voltage
-from deamat.actuator.ingredients import Ingredients, gather, strip_of
-from deamat.actuator.strip import (
-    Allowed,
-    Floats,
-    Strip,
-    best_passive,
-    blocked_force,
-    curvature,
-    highest_voltage,
-    pull_in_limit,
-    true_field,
-)
+from deamat.actuator.model import actuate, best_passive, blocked_force
+from deamat.actuator.request import Request
+from deamat.core.arrays import FloatArray
 from deamat.core.errors import MissingProperty, OutOfRange, PipelineError
-from deamat.core.units import to_si
-from deamat.materials.card import MaterialCard
 
 _RATIOS = np.geomspace(0.02, 3.0, 61)  # passive thickness over that of the film
 _PARETO_RATIOS = np.geomspace(0.1, 3.0, 16)
 _VOLTAGES = 20
-
-Cards = Mapping[str, MaterialCard]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,8 +40,8 @@ class Composition:
     voltage_V: float
     bound: Bound
     true_field_V_m: float
-    passive_thickness_m: Floats
-    curvature_per_m: Floats
+    passive_thickness_m: FloatArray
+    curvature_per_m: FloatArray
     best_passive_thickness_m: float
     best_curvature_per_m: float
     without_electrodes_per_m: float
@@ -79,13 +66,6 @@ class Trade:
     voltage_V: float
     curvature_per_m: float
     blocked_force_N: float
-
-
-@dataclass(frozen=True, slots=True)
-class _Pair:
-    found: Ingredients
-    strip: Strip
-    allowed: Allowed
 
 
 def compare(
@@ -116,7 +96,7 @@ def compare(
 
 
 def pareto(cards: Cards, declared: Designs, request: Request) -> tuple[Trade, ...]:
-    """Give the designs that are best in curvature, voltage or blocked force, or in between.
+    """Return the designs that are best in curvature, voltage or blocked force, or in between.
 
     All films on all passive layers, 16 thicknesses of the passive layer from 0.1 to 3 of that of
     the film, at least 20 voltages up to what breakdown and pull-in (or the
@@ -132,14 +112,14 @@ def pareto(cards: Cards, declared: Designs, request: Request) -> tuple[Trade, ..
 
     Raises
     ------
-    MissingProperty : no pair can be driven; the first reason is told
+    MissingProperty : no pair can be driven; the last reason is named
     """
-    tops: list[tuple[_Pair, float]] = []
+    tops: list[tuple[Case, float]] = []
     reason = "the database is empty"
     for de, passive in ((a, b) for a in cards for b in cards):
         try:
-            pair = _pair(cards, declared, replace(request, de=de, passive=passive))
-            tops.append((pair, _top(pair, request)))
+            case = design_case(cards, declared, replace(request, de=de, passive=passive))
+            tops.append((case, _highest_voltage(case)))
         except PipelineError as error:
             reason = str(error)
     if not tops:
@@ -147,74 +127,59 @@ def pareto(cards: Cards, declared: Designs, request: Request) -> tuple[Trade, ..
     highest = [top for _, top in tops]
     # Where a film ends it is at its best, so that the end of each is a voltage for all
     grid = np.unique([*highest, *(max(highest) * np.arange(1, _VOLTAGES) / _VOLTAGES)])
-    size = declared.geometry
-    length_m, width_m = to_si(size.length_mm, "mm"), to_si(size.width_mm, "mm")
     candidates: list[Trade] = []
-    for pair, top in tops:
-        candidates += _trades(pair, grid[grid <= top], length_m, width_m)
+    for case, top in tops:
+        candidates += _trades(case, grid[grid <= top])
     return tuple(_unbeaten(candidates))
 
 
-def _pair(cards: Cards, declared: Designs, request: Request) -> _Pair:
-    electrode = declared.electrode(request.electrode)
-    found = gather(cards[request.de], cards[request.passive], declared, request.where)
-    thickness = request.de_thickness_m
-    strip = strip_of(found, declared, electrode, thickness, thickness)
-    return _Pair(found, strip, allowed_for(declared, request, found))
-
-
 def _composition(cards: Cards, declared: Designs, request: Request) -> Composition:
-    pair = _pair(cards, declared, request)
-    strip = pair.strip
-    voltage, bound = choose_voltage(strip, pair.allowed, request, pair.found)
-    passive = _RATIOS * request.de_thickness_m
+    case = design_case(cards, declared, request)
+    drive = choose_drive(case)
+    strip, voltage = case.strip, drive.voltage_V
     bare = replace(strip, electrode_thickness_m=0.0)
-    best = float(best_passive(strip, voltage))
-    most = curvature(replace(strip, passive_thickness_m=best), voltage)
-    most_bare = curvature(
-        replace(bare, passive_thickness_m=float(best_passive(bare, voltage))), voltage
-    )
+    best, best_bare = drive.best_passive_thickness_m, float(best_passive(bare, voltage))
+    passive = _RATIOS * request.de_thickness_m
+    curve = actuate(replace(strip, passive_thickness_m=passive), voltage)
+    top = actuate(replace(strip, passive_thickness_m=best), voltage)
+    top_bare = actuate(replace(bare, passive_thickness_m=best_bare), voltage)
     return Composition(
         request.de,
         request.passive,
-        bool(pair.found.synthetic),
+        bool(case.values.synthetic),
         voltage,
-        bound,
-        float(true_field(strip, voltage)),
+        drive.bound,
+        float(top.true_field_V_m),
         passive,
-        np.asarray(curvature(replace(strip, passive_thickness_m=passive), voltage)),
+        np.asarray(curve.curvature_per_m),
         best,
-        float(most),
-        float(most_bare),
+        float(top.curvature_per_m),
+        float(top_bare.curvature_per_m),
     )
 
 
-def _top(pair: _Pair, request: Request) -> float:
-    if pair.found.strength is not None:
-        top = float(highest_voltage(pair.strip, pair.allowed))
-    elif request.voltage_V is None:
-        raise MissingProperty(
-            f"the breakdown limit of {pair.found.film_modulus.material} is unknown "
-            f"({pair.found.unknown}); test its breakdown, or give a voltage"
-        )
-    else:
-        top = float(pull_in_limit(pair.strip, pair.allowed))
-    return top if request.voltage_V is None else min(top, request.voltage_V)
+def _highest_voltage(case: Case) -> float:
+    """Return how far a pair may be driven, or the voltage asked for if that is less `[V]`."""
+    asked, limits = case.request.voltage_V, case.limits
+    if asked is None:
+        return highest_voltage(case)[0]
+    allowed = limits.pull_in_V if limits.breakdown_V is None else limits.highest_V
+    return min(float(allowed), asked)
 
 
-def _trades(pair: _Pair, voltages: Floats, length_m: float, width_m: float) -> Iterator[Trade]:
+def _trades(case: Case, voltages: FloatArray) -> Iterator[Trade]:
     if not voltages.size:
         return
+    request = case.request
     passive, voltage = (
         a.ravel()
-        for a in np.meshgrid(_PARETO_RATIOS * pair.strip.film_thickness_m, voltages, indexing="ij")
+        for a in np.meshgrid(_PARETO_RATIOS * request.de_thickness_m, voltages, indexing="ij")
     )
-    strip = replace(pair.strip, passive_thickness_m=passive)
-    bent = np.asarray(curvature(strip, voltage))
-    force = np.asarray(blocked_force(strip, voltage, length_m, width_m))
-    de, below = pair.found.film_modulus.material, pair.found.passive_modulus.material
-    for row in zip(passive.tolist(), voltage.tolist(), bent.tolist(), force.tolist(), strict=True):
-        yield Trade(de, below, *row)
+    bent = actuate(replace(case.strip, passive_thickness_m=passive), voltage)
+    force = np.asarray(blocked_force(bent, case.declared.geometry))
+    columns = (passive, voltage, np.asarray(bent.curvature_per_m), force)
+    for row in zip(*(column.tolist() for column in columns), strict=True):
+        yield Trade(request.de, request.passive, *row)
 
 
 def _unbeaten(candidates: list[Trade]) -> list[Trade]:

@@ -14,6 +14,7 @@ from deamat.actuator.strain import InPlane
 from deamat.core.config import validate
 from deamat.core.errors import ConfigError
 from deamat.core.instruments import Declared
+from deamat.core.units import to_si
 
 DESIGNS_FILE = "designs.toml"
 
@@ -58,6 +59,21 @@ class Geometry(Sourced):
     length_mm: float = Field(gt=0)
     width_mm: float = Field(gt=0)
 
+    @property
+    def length_m(self) -> float:
+        """Length in SI `[m]`."""
+        return to_si(self.length_mm, "mm")
+
+    @property
+    def width_m(self) -> float:
+        """Width in SI `[m]`."""
+        return to_si(self.width_mm, "mm")
+
+    @property
+    def area_m2(self) -> float:
+        """Electrode area `[m2]`."""
+        return self.length_m * self.width_m
+
 
 class Tolerances(Sourced):
     """Standard uncertainties of the layers that will be made: no material test narrows them."""
@@ -71,7 +87,7 @@ class Limits(Declared):
     """How far the voltage may go."""
 
     breakdown_probability: float = Field(
-        default=0.01, gt=0, lt=1, description="part of the films that may break down"
+        default=0.01, gt=0, lt=1, description="fraction of the films that may break down"
     )
     pull_in_fraction: float = Field(
         default=0.9, gt=0, le=1, description="highest voltage over that of pull-in"
@@ -105,11 +121,11 @@ class Designs(Declared):
     designs: Mapping[str, Wanted] = Field(default_factory=dict)
 
     def electrode(self, key: str) -> Electrode:
-        """Give a declared electrode; `ConfigError` names the nearest ones otherwise."""
+        """Return a declared electrode; `ConfigError` names the nearest ones otherwise."""
         return _named(self.electrodes, key, "electrode")
 
     def wanted(self, name: str) -> Wanted:
-        """Give a declared design; `ConfigError` names the nearest ones otherwise."""
+        """Return a declared design; `ConfigError` names the nearest ones otherwise."""
         return _named(self.designs, name, "design")
 
 

@@ -3,96 +3,31 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
-from typing import Literal, TypeAlias
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from deamat.actuator.declared import Designs, Electrode, Wanted
-from deamat.actuator.ingredients import Ingredients, Where, gather, inputs_of, strip_of
+from deamat.actuator.case import Bound, Cards, Case, Drive, choose_drive, design_case
+from deamat.actuator.declared import Designs
+from deamat.actuator.inputs import Input, inputs_of
+from deamat.actuator.model import actuate, blocked_force, respond, respond_by_failing
 from deamat.actuator.next_test import TestValue, next_tests, plan
-from deamat.actuator.ranges import Reals, check, within
-from deamat.actuator.strip import (
-    Allowed,
-    Floats,
-    Strip,
-    best_passive,
-    blocked_force,
-    breakdown_voltage,
-    curvature,
-    curvature_or_nan,
-    failure_probability,
-    highest_voltage,
-    pull_in_limit,
-    true_field,
-)
+from deamat.actuator.request import Request
+from deamat.actuator.strip import Strip
 from deamat.actuator.uncertainty import (
     Bar,
     FirstOrder,
-    Input,
     MonteCarlo,
-    Response,
     first_order,
+    first_orders,
     monte_carlo,
-    sample,
     tornado,
 )
-from deamat.core.errors import MissingProperty
-from deamat.core.units import to_si
-from deamat.materials.card import MaterialCard
-
-Bound: TypeAlias = Literal["given", "breakdown", "pull-in"]
 
 _POINTS = 60  # of the curves against voltage: the part that breaks down is steep
 _DRAWS = 20_000
 _PLANNED = 10  # specimens
-
-
-@dataclass(frozen=True, slots=True)
-class Request:
-    """What a designer asks for.
-
-    Parameters
-    ----------
-    de, passive, electrode : material ids of the database, key of a declared electrode
-    de_thickness_m : of the film as made `[m]`
-    passive_thickness_m : None takes the one that bends most
-    voltage_V : None takes the highest allowed one
-    breakdown_probability : None takes the declared one
-    where : conditions of the records, see `ingredients.gather`
-    """
-
-    de: str
-    passive: str
-    electrode: str
-    de_thickness_m: float
-    passive_thickness_m: float | None = None
-    voltage_V: float | None = None
-    breakdown_probability: float | None = None
-    where: Where = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        check("thickness_m", self.de_thickness_m, "the de layer")
-        if self.passive_thickness_m is not None:
-            check("thickness_m", self.passive_thickness_m, "the passive layer")
-        if self.voltage_V is not None:
-            check("voltage_V", self.voltage_V, "the de layer")
-            if self.voltage_V == 0.0:
-                within("voltage_V", 0.0, 1e-3, 1e6, "V", "a film without voltage does not bend")
-
-    @classmethod
-    def of(cls, wanted: Wanted) -> Request:
-        """Take a design of `config/designs.toml`."""
-        passive, voltage = wanted.passive_thickness_um, wanted.voltage_kV
-        return cls(
-            wanted.de,
-            wanted.passive,
-            wanted.electrode,
-            to_si(wanted.de_thickness_um, "um"),
-            None if passive is None else to_si(passive, "um"),
-            None if voltage is None else to_si(voltage, "kV"),
-        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,13 +47,9 @@ class Design:
 
     Parameters
     ----------
-    ingredients, electrode, strip, inputs : what it rests on
-    best_passive_thickness_m : the one that bends most at this voltage `[m]`
-    voltage_V, bound : of the answer, and what sets it
-    allowed : limits of the voltage
-    pull_in_limit_V : the allowed part of the pull-in voltage `[V]`
-    breakdown_voltage_V : of the allowed probability; infinite if the film pulls in before, None
-        if the breakdown is not known
+    case : the request with all that the answer rests on: values of cards, limits of the voltage
+    drive : voltage of the answer, what sets it, and the passive layer that bends most
+    strip, inputs : what was predicted, and its uncertain numbers
     prediction, draws : curvature with uncertainty, to first order and by Monte Carlo `[1/m]`
     failure_probability : at the values; `failure_interval95` by Monte Carlo; None if unknown
     blocked_force_N : at the tip
@@ -127,17 +58,10 @@ class Design:
     points : curvature against voltage up to `voltage_V`
     """
 
-    request: Request
-    ingredients: Ingredients
-    electrode: Electrode
+    case: Case
+    drive: Drive
     strip: Strip
     inputs: tuple[Input, ...]
-    best_passive_thickness_m: float
-    voltage_V: float
-    bound: Bound
-    allowed: Allowed
-    pull_in_limit_V: float
-    breakdown_voltage_V: float | None
     prediction: FirstOrder
     draws: MonteCarlo
     failure_probability: float | None
@@ -150,12 +74,22 @@ class Design:
     notes: tuple[str, ...]
 
     @property
+    def voltage_V(self) -> float:
+        """Voltage of the answer `[V]`."""
+        return self.drive.voltage_V
+
+    @property
+    def bound(self) -> Bound:
+        """What sets the voltage of the answer."""
+        return self.drive.bound
+
+    @property
     def synthetic(self) -> tuple[str, ...]:
         """Materials whose card is simulated; whoever shows the design must say so."""
-        return self.ingredients.synthetic
+        return self.case.values.synthetic
 
 
-def design(cards: Mapping[str, MaterialCard], declared: Designs, request: Request) -> Design:
+def design(cards: Cards, declared: Designs, request: Request) -> Design:
     """Answer a request from cards and declared facts.
 
     Parameters
@@ -172,154 +106,64 @@ def design(cards: Mapping[str, MaterialCard], declared: Designs, request: Reques
         allowed breakdown probability
     ConfigError : an electrode that is not declared
     """
-    electrode = declared.electrode(request.electrode)
-    found = gather(cards[request.de], cards[request.passive], declared, request.where)
-    allowed = allowed_for(declared, request, found)
-    # The best passive layer depends on the voltage through the thinning alone, and not the other
-    # way round: any passive thickness serves to find the voltage.
-    trial = strip_of(found, declared, electrode, request.de_thickness_m, request.de_thickness_m)
-    voltage, bound = choose_voltage(trial, allowed, request, found)
-    best = float(best_passive(trial, voltage))
-    passive = best if request.passive_thickness_m is None else request.passive_thickness_m
-    strip = replace(trial, passive_thickness_m=passive)
-    known = found.strength is not None
-    inputs = inputs_of(found, strip, declared, electrode, breakdown=bound == "breakdown")
-    response = respond(strip, voltage if bound == "given" else allowed)
+    case = design_case(cards, declared, request)
+    drive = choose_drive(case)
+    strip = case.strip
+    if request.passive_thickness_m is None:
+        strip = replace(strip, passive_thickness_m=drive.best_passive_thickness_m)
+    known = inputs_of(case.values, declared, case.electrode, strip)
+    at_voltage = tuple(x for x in known if not x.concerns_breakdown)
+    # A film that is driven to its breakdown limit bends as uncertainly as it breaks down
+    inputs = known if drive.bound == "breakdown" else at_voltage
+    response = respond(strip, drive.voltage_V if drive.bound == "given" else case.limits.allowed)
     prediction = first_order(inputs, response)
-    chance, interval = _failure(strip, found, declared, electrode, voltage, allowed)
-    size = declared.geometry
-    force = blocked_force(strip, voltage, to_si(size.length_mm, "mm"), to_si(size.width_mm, "mm"))
+    draws = monte_carlo(inputs, response, _DRAWS)
+    bars = tornado(inputs, prediction, response)
+    answer = actuate(strip, drive.voltage_V)
+    chance, interval = None, None
+    if case.limits.breakdown_V is not None:
+        chance = float(answer.failure_probability())
+        failing = respond_by_failing(strip, drive.voltage_V)
+        interval = monte_carlo(known, failing, _DRAWS, seed=1).interval95
     return Design(
-        request, found, electrode, strip, inputs, best, voltage, bound, allowed,
-        float(pull_in_limit(strip, allowed)),
-        float(breakdown_voltage(strip, allowed)) if known else None,
-        prediction, monte_carlo(inputs, response, _DRAWS), chance, interval, float(force),
-        tornado(inputs, response), next_tests(inputs, prediction),
-        plan(inputs, prediction, _PLANNED),
-        _points(strip, found, declared, electrode, voltage, allowed),
-        _notes(found, declared, electrode, prediction, allowed),
+        case, drive, strip, inputs, prediction, draws, chance, interval,
+        float(blocked_force(answer, declared.geometry)), bars, next_tests(inputs, prediction),
+        plan(inputs, prediction, _PLANNED), _points(case, strip, at_voltage, drive.voltage_V),
+        _notes(case, prediction),
     )  # fmt: skip
 
 
-def allowed_for(declared: Designs, request: Request, found: Ingredients) -> Allowed:
-    """Give the limits of the voltage: the declared ones, where the request says nothing else."""
-    asked = request.breakdown_probability
-    limits = declared.limits
-    return Allowed(
-        limits.breakdown_probability if asked is None else asked,
-        limits.pull_in_fraction,
-        found.area_ratio,
-    )
-
-
-def choose_voltage(
-    strip: Strip, allowed: Allowed, request: Request, found: Ingredients
-) -> tuple[float, Bound]:
-    """Take the voltage asked for if it is allowed, or the highest allowed one.
-
-    Raises
-    ------
-    MissingProperty : none is asked for and the breakdown is unknown
-    OutOfRange : above pull-in, or above the voltage of the allowed breakdown probability
-    """
-    given = request.voltage_V
-    if given is None:
-        if found.strength is None:
-            raise MissingProperty(
-                f"the breakdown limit of {request.de} is unknown ({found.unknown}): no range of "
-                "voltage can be given; test its breakdown, or give a voltage"
-            )
-        limited = breakdown_voltage(strip, allowed) <= pull_in_limit(strip, allowed)
-        return float(highest_voltage(strip, allowed)), "breakdown" if limited else "pull-in"
-    curvature(strip, given)  # refuses a voltage above pull-in
-    if found.strength is not None:
-        within(
-            "voltage_V",
-            given,
-            0.0,
-            float(breakdown_voltage(strip, allowed)),
-            "V",
-            f"above it more than {100 * allowed.breakdown_probability:g} % of the films break "
-            "down: lower the voltage, or allow another probability",
-            "the de layer",
-        )
-    return given, "given"
-
-
-def respond(strip: Strip, at: float | Allowed) -> Response:
-    """Give the curvature by the inputs, at a voltage or at the highest allowed one."""
-
-    def response(values: Mapping[str, Floats]) -> Reals:
-        moved = strip.moved(values)
-        voltage = highest_voltage(moved, at) if isinstance(at, Allowed) else at
-        return curvature_or_nan(moved, voltage)
-
-    if isinstance(at, Allowed) and strip.breakdown_strength_V_m is None:
-        raise MissingProperty("the breakdown limit is unknown: give a voltage")
-    return response
-
-
-def _failure(
-    strip: Strip,
-    found: Ingredients,
-    declared: Designs,
-    electrode: Electrode,
-    voltage_V: float,
-    allowed: Allowed,
-) -> tuple[float | None, tuple[float, float] | None]:
-    if found.strength is None:
-        return None, None
-    inputs = inputs_of(found, strip, declared, electrode, breakdown=True)
-    drawn = strip.moved(sample(inputs, _DRAWS, seed=1))
-    chances = failure_probability(drawn, voltage_V, allowed.area_ratio)
-    low, high = np.quantile(chances, (0.025, 0.975))
-    return float(failure_probability(strip, voltage_V, allowed.area_ratio)), (
-        float(low),
-        float(high),
-    )
-
-
 def _points(
-    strip: Strip,
-    found: Ingredients,
-    declared: Designs,
-    electrode: Electrode,
-    highest_V: float,
-    allowed: Allowed,
+    case: Case, strip: Strip, inputs: Sequence[Input], highest_V: float
 ) -> tuple[Point, ...]:
-    inputs = inputs_of(found, strip, declared, electrode, breakdown=False)
+    voltages = np.linspace(0.0, highest_V, _POINTS + 1)[1:]
+    bent = first_orders(inputs, respond(strip, voltages[:, None]), _POINTS)
     points = []
-    for voltage in np.linspace(0.0, highest_V, _POINTS + 1)[1:].tolist():
-        there = first_order(inputs, respond(strip, voltage))
-        chance = None
-        if found.strength is not None:
-            chance = float(failure_probability(strip, voltage, allowed.area_ratio))
+    for voltage, there in zip(voltages.tolist(), bent, strict=True):
+        actuated = actuate(strip, voltage)
+        known = case.limits.breakdown_V is not None
         points.append(
             Point(
                 voltage,
                 there.value,
                 there.u if there.holds else math.nan,
-                float(true_field(strip, voltage)),
-                chance,
+                float(actuated.true_field_V_m),
+                float(actuated.failure_probability()) if known else None,
             )
         )
     return tuple(points)
 
 
-def _notes(
-    found: Ingredients,
-    declared: Designs,
-    electrode: Electrode,
-    prediction: FirstOrder,
-    allowed: Allowed,
-) -> tuple[str, ...]:
-    notes = list(found.notes)
-    if found.strength is None:
-        notes.append(f"the breakdown limit is unknown: {found.unknown}")
-    elif allowed.breakdown_probability * found.strength.n < 1:
+def _notes(case: Case, prediction: FirstOrder) -> tuple[str, ...]:
+    values, electrode, model = case.values, case.electrode, case.declared.model
+    probability = case.limits.allowed.breakdown_probability
+    notes = list(values.notes)
+    if values.strength is None:
+        notes.append(f"the breakdown limit is unknown: {values.unknown}")
+    elif probability * values.strength.n < 1:
         notes.append(
-            f"{100 * allowed.breakdown_probability:g} % of broken films is extrapolated from "
-            f"{found.strength.n} tests by the Weibull law"
+            f"{100 * probability:g} % of broken films is extrapolated from "
+            f"{values.strength.n} tests by the Weibull law"
         )
     if electrode.u_youngs_modulus_MPa is None:
         notes.append(f"no uncertainty is declared of the modulus of {electrode.name}: not counted")
@@ -330,7 +174,7 @@ def _notes(
             "by Monte Carlo"
         )
     notes.append(
-        f"Young's modulus is the {declared.model.modulus}; "
-        f"in-plane rule {declared.model.in_plane}; curvature without weight"
+        f"Young's modulus is the {model.modulus}; "
+        f"in-plane rule {model.in_plane}; curvature without weight"
     )
     return tuple(notes)

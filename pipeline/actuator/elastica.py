@@ -63,7 +63,7 @@ class Elastica:
     def shape(
         self, positions: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-        """Give `x`, `y` `[m]` and the tangent angle `[rad]`, each `(..., points)`.
+        """Return `x`, `y` `[m]` and the tangent angle `[rad]`, each `(..., points)`.
 
         Parameters
         ----------
@@ -73,7 +73,7 @@ class Elastica:
         ------
         OutOfRange : a position off the strip
         """
-        within("position", positions, 0.0, 1.0, mend="give fractions of the length")
+        within("position", positions, 0.0, 1.0, hint="give fractions of the length")
         # Twice the points of the angle: its cosine has finer features
         g = grid(2 * self.series.shape[-1])
         angle = on_grid(self.series, g.points.size)
@@ -91,7 +91,7 @@ def deflect(
     tolerance: float = 1e-9,
     unsettled: Literal["raise", "nan"] = "raise",
 ) -> Elastica:
-    """Give the shape of a cantilever strip under its own weight and the curvature of its films.
+    """Return the shape of a cantilever strip under its own weight and the curvature of its films.
 
     The strip bends and does not stretch under weight; its length, stiffness and curvature are those
     of the beam under voltage.
@@ -134,13 +134,13 @@ def solve(
     angle_rad : of gravity from the root's axis `[rad]`
     length_m : along the elongated strip `[m]`
     """
-    within("load w L^3 / B", load, 0.0, MAX_LOAD, mend="shorten or stiffen the strip")
+    within("load w L^3 / B", load, 0.0, MAX_LOAD, hint="shorten or stiffen the strip")
     within("turn kappa L", turn, -MAX_TURN_rad, MAX_TURN_rad, "rad", "beyond, it coils up")
     check("angle_rad", angle_rad)
     check("length_m", length_m)
     if unsettled not in ("raise", "nan"):
         raise OutOfRange(f"unsettled is {unsettled!r}; allowed are 'raise' and 'nan'")
-    within("tolerance", tolerance, 1e-11, 1e-2, mend="it is a fraction of the length")
+    within("tolerance", tolerance, 1e-11, 1e-2, hint="it is a fraction of the length")
     given = np.broadcast_arrays(*(np.asarray(v, float) for v in (load, turn, angle_rad, length_m)))
     g, k, a, length = (np.ravel(v) for v in given)
     strips = Strips(g, k, a)

@@ -73,7 +73,7 @@ def rest(strips: Strips, tolerance: float) -> tuple[Array, Array]:
 
 
 def tips(theta: Array, on: Grid) -> Array:
-    """Give tip positions for tangent angles `(strips, N)`, in lengths, as `(strips, 2)`."""
+    """Return tip positions for tangent angles `(strips, N)`, in lengths, as `(strips, 2)`."""
     return np.stack([np.cos(theta) @ on.weights, np.sin(theta) @ on.weights], axis=-1)
 
 

@@ -55,8 +55,8 @@ class Unimorph:
             ("modulus_Pa", self.electrode_modulus_Pa),
         ):
             allowed = RANGES[quantity]
-            within(quantity, value, 0.0, allowed.high, allowed.unit, allowed.mend, "the electrode")
-        within("n_active", self.n_active, 1, 10_000, mend="give the number of active layers")
+            within(quantity, value, 0.0, allowed.high, allowed.unit, allowed.hint, "the electrode")
+        within("n_active", self.n_active, 1, 10_000, hint="give the number of active layers")
 
     @property
     def total_thickness_m(self) -> Reals:
@@ -67,7 +67,7 @@ class Unimorph:
 
 
 def planar(relative_permittivity: Reals, field_V_m: Reals, modulus_Pa: Reals) -> Reals:
-    """Give the figure of merit of a planar actuator, `eps0 eps_r E^2 / Y` `[1]`.
+    """Return the figure of merit of a planar actuator, `eps0 eps_r E^2 / Y` `[1]`.
 
     It ranks materials by the thickness strain they would reach; unlike `dea_strain` it does not
     ask whether the film gets there.
@@ -89,7 +89,7 @@ def planar(relative_permittivity: Reals, field_V_m: Reals, modulus_Pa: Reals) ->
 def dea_strain(
     relative_permittivity: Reals, field_V_m: Reals, modulus_Pa: Reals, poisson_ratio: Reals
 ) -> Reals:
-    """Give the free in-plane strain of a film at the field it sees, `nu eps0 eps_r E^2 / Y` `[1]`.
+    """Return the free in-plane strain of a film at its true field, `nu eps0 eps_r E^2 / Y` `[1]`.
 
     Parameters
     ----------
@@ -110,13 +110,13 @@ def dea_strain(
         field, limit = np.broadcast_arrays(
             field_V_m, pull_in_field(modulus_Pa, relative_permittivity), s
         )[:2]
-        mend = "above the pull-in field the film has no equilibrium: lower the field"
-        within("field_V_m", float(field.flat[at]), 0.0, float(limit.flat[at]), "V/m", mend)
+        hint = "above the pull-in field the film has no equilibrium: lower the field"
+        within("field_V_m", float(field.flat[at]), 0.0, float(limit.flat[at]), "V/m", hint)
     return poisson_ratio * s
 
 
 def no_electrodes(unimorph: Unimorph, active_strain: Reals) -> Reals:
-    """Give the curvature of a unimorph whose electrodes are thin and soft enough to forget.
+    """Return the curvature of a unimorph whose electrodes are thin and soft enough to forget.
 
     `k = 6 e Y (t + t^2) / (t_a (1 + Y^2 t^4 + Y t (4 + 6 t + 4 t^2)))` with `Y = Y_p / Y_a` and
     `t = t_p / t_a`, `t_a` being all active layers together.
@@ -146,7 +146,7 @@ def no_electrodes(unimorph: Unimorph, active_strain: Reals) -> Reals:
 
 
 def single_layer(unimorph: Unimorph, active_strain: Reals) -> Reals:
-    """Give the curvature of a unimorph with one active layer between two electrodes.
+    """Return the curvature of a unimorph with one active layer between two electrodes.
 
     Sikulskyi et al. 2022, Eq. 16; its polynomial in `t`, `Y`, `R_t = t_el / t_a` and
     `R_Y = Y_el / Y_a` is the composite beam of `beam.bend`, term by term.
@@ -185,7 +185,7 @@ def single_layer(unimorph: Unimorph, active_strain: Reals) -> Reals:
 
 
 def multilayer(unimorph: Unimorph, active_strain: Reals) -> Reals:
-    """Give the curvature of a unimorph with any number of active layers.
+    """Return the curvature of a unimorph with any number of active layers.
 
     Active layers and electrodes share one centre, `h = (t_p + H) / 2` above that of the passive
     layer, `H` being their height. With `A_p = Y_p t_p` and `A` the stiffness of the rest,
@@ -222,7 +222,7 @@ def multilayer(unimorph: Unimorph, active_strain: Reals) -> Reals:
 
 
 def active_part(unimorph: Unimorph) -> tuple[Reals, Reals, Reals]:
-    """Give what stands on the passive layer, for a strip of unit width.
+    """Return the layers on top of the passive layer as one, for a strip of unit width.
 
     Returns
     -------

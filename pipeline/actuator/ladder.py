@@ -231,7 +231,7 @@ def choose(actuator: Actuator, tolerance: float, aim: Aim = "tip") -> Choice:
     OutOfRange : a tolerance outside its range, a voltage above pull-in
     FitRefused : only the elastica will do, and the strip buckles or snaps
     """
-    within("tolerance", tolerance, _ELASTICA_TOLERANCE, 1.0, mend="it is a fraction, not percent")
+    within("tolerance", tolerance, _ELASTICA_TOLERANCE, 1.0, hint="it is a fraction, not percent")
     estimated = errors(actuator, aim)
     rungs = list(estimated)
     rung = next(r for r in rungs if estimated[r] <= tolerance)
@@ -255,7 +255,7 @@ def _alternates(stack: Stack) -> bool:
 
 
 def _merit(actuator: Actuator, rung: Rung) -> float:
-    """Give the curvature of a closed form: all films as one, all electrodes as their mean."""
+    """Return the curvature of a closed form: all films as one, all electrodes as their mean."""
     stack = actuator.stack
     if not _alternates(stack):
         roles = ", ".join(layer.role for layer in stack.layers)

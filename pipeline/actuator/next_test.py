@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from deamat.actuator.inputs import Input
 from deamat.actuator.ranges import within
-from deamat.actuator.uncertainty import FirstOrder, Input, combined
+from deamat.actuator.uncertainty import FirstOrder, combined
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +75,7 @@ def next_tests(
 
 
 def plan(inputs: Sequence[Input], prediction: FirstOrder, specimens: int) -> tuple[TestValue, ...]:
-    """Give the order in which so many specimens are best tested, one at a time, greedily."""
+    """Return the order in which so many specimens are best tested, one at a time, greedily."""
     within("specimens", specimens, 1, 1000)
     steps = []
     now, known = prediction, list(inputs)
@@ -83,11 +85,18 @@ def plan(inputs: Sequence[Input], prediction: FirstOrder, specimens: int) -> tup
             break
         best = ranked[0]
         steps.append(best)
-        known = [x.after(1) if x.test == best.test else x for x in known]
+        known = [_grown(x, 1) if x.test == best.test else x for x in known]
         now = FirstOrder(now.value, best.u_then, now.gradient, now.asymmetry, now.holds)
     return tuple(steps)
 
 
 def _after(inputs: Sequence[Input], prediction: FirstOrder, test: str, further: int) -> float:
-    grown = [x.after(further) if x.test == test else x for x in inputs]
+    grown = [_grown(x, further) if x.test == test else x for x in inputs]
     return combined(grown, prediction.gradient)
+
+
+def _grown(x: Input, further: int) -> Input:
+    """Return the input as `further` specimens would leave it: independent parts shrink."""
+    factor = math.sqrt(x.n / (x.n + further)) if x.n else 1.0
+    budget = (c if c.shared else replace(c, u=c.u * factor) for c in x.budget)
+    return replace(x, budget=tuple(budget), n=x.n + further if x.n else 0)

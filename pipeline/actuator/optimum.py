@@ -16,7 +16,7 @@ _STEPS = 50  # of golden section: the bracket shrinks to 4e-11 of its width
 
 
 def thickness_ratio_at_fixed_total(modulus_ratio: Reals) -> Reals:
-    """Give the best `t_p / t_a` when the total thickness is fixed, `1 / sqrt(Y_p / Y_a)`.
+    """Return the best `t_p / t_a` when the total thickness is fixed, `1 / sqrt(Y_p / Y_a)`.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def thickness_ratio_at_fixed_total(modulus_ratio: Reals) -> Reals:
 
 
 def modulus_ratio_at_fixed_active(thickness_ratio: Reals) -> Reals:
-    """Give the `Y_p / Y_a` for which `t_p / t_a` is the best passive thickness on a given film.
+    """Return the `Y_p / Y_a` for which `t_p / t_a` is the best passive thickness on a given film.
 
     `Y = 1 / (t^2 (2 t + 3))`, no electrodes.
 
@@ -52,7 +52,7 @@ def modulus_ratio_at_fixed_active(thickness_ratio: Reals) -> Reals:
 
 
 def thickness_ratio_at_fixed_active(modulus_ratio: Reals) -> Reals:
-    """Give the best `t_p / t_a` on a film of given thickness: Eq. 19 solved for `t`.
+    """Return the best `t_p / t_a` on a film of given thickness: Eq. 19 solved for `t`.
 
     The one positive root of `2 t^3 + 3 t^2 = 1 / Y`. With `t = x - 1/2` it is
     `4 x^3 - 3 x = 2 / Y - 1`, a triple-angle formula: hyperbolic for `Y < 1`, trigonometric above.
@@ -77,7 +77,7 @@ def thickness_ratio_at_fixed_active(modulus_ratio: Reals) -> Reals:
 
 
 def best_passive_modulus(unimorph: Unimorph) -> Reals:
-    """Give the passive modulus that bends most at the given thicknesses, with electrodes `[Pa]`.
+    """Return the passive modulus that bends most at the given thicknesses, with electrodes `[Pa]`.
 
     The curvature is `a Y / (alpha Y^2 + beta Y + gamma)` in the passive modulus, greatest at
     `sqrt(gamma / alpha) = sqrt(12 A D) / t_p^2`, `A` and `D` being the stiffness and the bending
@@ -93,7 +93,7 @@ def best_passive_modulus(unimorph: Unimorph) -> Reals:
 
 
 def best_passive_thickness(unimorph: Unimorph) -> Reals:
-    """Give the passive thickness that bends most on the given film, with electrodes `[m]`.
+    """Return the passive thickness that bends most on the given film, with electrodes `[m]`.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def best_passive_thickness(unimorph: Unimorph) -> Reals:
 
     Returns
     -------
-    thickness to a relative 1e-6, which is as far as a flat maximum can be told in floats `[m]`
+    thickness to a relative 1e-6, which is as far as floats resolve a flat maximum `[m]`
 
     Source: maximum of `figure_of_merit.multilayer`; Sikulskyi et al. 2022, Table 1, Table 5.
     """
@@ -116,7 +116,7 @@ def best_passive_thickness(unimorph: Unimorph) -> Reals:
 
 
 def best_split(unimorph: Unimorph) -> Reals:
-    """Give the passive thickness that bends most at the same total thickness, with electrodes.
+    """Return the passive thickness that bends most at the same total thickness, with electrodes.
 
     Total and electrode thicknesses stay; what the passive layer gains the active layers lose.
 

@@ -8,6 +8,7 @@ from typing import Any
 
 from deamat.actuator.compositions import Composition, Refused, Trade
 from deamat.actuator.design import Design
+from deamat.actuator.ranges import Reals
 from deamat.actuator.uncertainty import Bar
 from deamat.core.present import SYNTHETIC_BANNER, aligned, readable, readable_conditions
 from deamat.core.records import PropertyRecord
@@ -24,13 +25,13 @@ _BOUNDS = {
 
 def design_text(design: Design) -> str:
     """Write a design for people: what to make, how far it bends, what dominates, what to test."""
-    r, strip = design.request, design.strip
-    lines = [f"Design: {r.de} on {r.passive}, electrodes {design.electrode.name}"]
+    r, strip = design.case.request, design.strip
+    lines = [f"Design: {r.de} on {r.passive}, electrodes {design.case.electrode.name}"]
     lines += synthetic_lines(design)
     lines += ["", *_facts(design)]
     lines += ["", *_answer(design)]
-    if strip.passive_thickness_m != design.best_passive_thickness_m:
-        best_um = from_si(design.best_passive_thickness_m, "um")
+    if strip.passive_thickness_m != design.drive.best_passive_thickness_m:
+        best_um = from_si(design.drive.best_passive_thickness_m, "um")
         lines.append(f"optimum     a passive layer of {best_um:.4g} um would bend most")
     lines += ["", "What dominates"]
     bars = [("input", "u of curvature", "elasticity"), *map(_bar_row, design.tornado)]
@@ -43,13 +44,13 @@ def design_text(design: Design) -> str:
     lines += aligned(rows, "  ")
     lines += _plan(design)
     lines += ["", "Taken from the cards"]
-    lines += aligned([_record_row(x) for x in design.ingredients.records()], "  ")
+    lines += aligned([_record_row(x) for x in design.case.values.records()], "  ")
     lines += ["", "Notes", *(f"  {note}" for note in design.notes)]
     return "\n".join(lines) + "\n"
 
 
 def synthetic_lines(design: Design) -> list[str]:
-    """Give the banner and the simulated cards; no line if all was measured."""
+    """Return the banner and the simulated cards; no line if all was measured."""
     if not design.synthetic:
         return []
     return [f"{SYNTHETIC_BANNER} ({', '.join(design.synthetic)})"]
@@ -57,8 +58,8 @@ def synthetic_lines(design: Design) -> list[str]:
 
 def design_document(design: Design) -> Document:
     """Write a design for programs; SI throughout, None for what is not known."""
-    r, strip = design.request, design.strip
-    prediction = design.prediction
+    r, strip = design.case.request, design.strip
+    prediction, limits = design.prediction, design.case.limits
     return {
         **_banner(bool(design.synthetic)),
         "synthetic_materials": list(design.synthetic),
@@ -67,13 +68,13 @@ def design_document(design: Design) -> Document:
         "electrode": r.electrode,
         "de_thickness_m": r.de_thickness_m,
         "passive_thickness_m": strip.passive_thickness_m,
-        "best_passive_thickness_m": design.best_passive_thickness_m,
+        "best_passive_thickness_m": design.drive.best_passive_thickness_m,
         "electrode_thickness_m": strip.electrode_thickness_m,
         "voltage_V": design.voltage_V,
         "voltage_set_by": design.bound,
-        "allowed_breakdown_probability": design.allowed.breakdown_probability,
-        "breakdown_voltage_V": _finite(design.breakdown_voltage_V),
-        "pull_in_limit_V": design.pull_in_limit_V,
+        "allowed_breakdown_probability": limits.allowed.breakdown_probability,
+        "breakdown_voltage_V": _finite(limits.breakdown_V),
+        "pull_in_limit_V": float(limits.pull_in_V),
         "failure_probability": design.failure_probability,
         "failure_probability_ci95": design.failure_interval95 and list(design.failure_interval95),
         "curvature_per_m": prediction.value,
@@ -120,7 +121,7 @@ def design_document(design: Design) -> Document:
             }
             for p in design.points
         ],
-        "records": [_record_document(x) for x in design.ingredients.records()],
+        "records": [_record_document(x) for x in design.case.values.records()],
         "notes": list(design.notes),
     }
 
@@ -227,8 +228,10 @@ def _facts(design: Design) -> list[str]:
     )
     made = ", ".join(f"{name} {from_si(float(t), 'um'):.4g} um" for name, t in layers)
     field_V_um = from_si(design.points[-1].true_field_V_m, "V/um")
-    voltage_kV, limit_kV = (from_si(v, "kV") for v in (design.voltage_V, design.pull_in_limit_V))
-    part = f"{100 * design.allowed.pull_in_fraction:g} %"
+    voltage_kV, limit_kV = (
+        from_si(v, "kV") for v in (design.voltage_V, float(design.case.limits.pull_in_V))
+    )
+    part = f"{100 * design.case.limits.allowed.pull_in_fraction:g} %"
     why = _BOUNDS[design.bound]
     lines = [
         f"layers      {made} (bottom to top)",
@@ -298,5 +301,5 @@ def _record_document(record: PropertyRecord) -> Document:
     }
 
 
-def _finite(value: float | None) -> float | None:
-    return value if value is not None and math.isfinite(value) else None
+def _finite(value: Reals | None) -> float | None:
+    return float(value) if value is not None and math.isfinite(value) else None

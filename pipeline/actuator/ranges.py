@@ -6,23 +6,23 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
+from deamat.core.arrays import FloatArray
 from deamat.core.errors import OutOfRange
 
 # One design, or one value per design: every formula here is plain arithmetic, so that scalars run
 # at the speed of floats and arrays at the speed of numpy.
-Reals: TypeAlias = float | NDArray[np.float64]
+Reals: TypeAlias = float | FloatArray
 
 
 @dataclass(frozen=True, slots=True)
 class Range:
-    """Lowest and highest allowed value `[unit]`, and what would mend a value outside."""
+    """Lowest and highest allowed value `[unit]`, and what would put right a value outside."""
 
     low: float
     high: float
     unit: str
-    mend: str
+    hint: str
 
 
 _LENGTHS = "lengths are in metres: was it given in micrometres or millimetres?"
@@ -63,7 +63,7 @@ def check(quantity: str, value: Reals, where: str = "") -> None:
     OutOfRange : outside the range or not finite; names quantity, first bad value and range
     """
     allowed = RANGES[quantity]
-    within(quantity, value, allowed.low, allowed.high, allowed.unit, allowed.mend, where)
+    within(quantity, value, allowed.low, allowed.high, allowed.unit, allowed.hint, where)
 
 
 def within(
@@ -72,7 +72,7 @@ def within(
     low: float,
     high: float,
     unit: str = "",
-    mend: str = "",
+    hint: str = "",
     where: str = "",
 ) -> None:
     """Refuse a value outside a range that depends on other values; as `check` otherwise."""
@@ -84,16 +84,16 @@ def within(
         values = np.asarray(value)
         if values.size and values.min() >= low and values.max() <= high:
             return
-    raise OutOfRange(_complaint(quantity, np.asarray(value, float), low, high, unit, mend, where))
+    raise OutOfRange(_complaint(quantity, np.asarray(value, float), low, high, unit, hint, where))
 
 
 def _complaint(
     quantity: str,
-    values: NDArray[np.float64],
+    values: FloatArray,
     low: float,
     high: float,
     unit: str,
-    mend: str,
+    hint: str,
     where: str,
 ) -> str:
     unit = f" {unit}" if unit else ""
@@ -103,8 +103,8 @@ def _complaint(
         return f"{quantity}{owner} is an empty array; {allowed}"
     bad = np.flatnonzero(~((values >= low) & (values <= high)))
     place = f" at design {bad[0]}" if values.ndim else ""
-    if mend in _UNIT_SLIPS and values.flat[bad[0]] <= 0.0:
-        mend = "give its magnitude, greater than zero"
-    return f"{quantity}{owner} is {values.flat[bad[0]]:g}{unit}{place}; {allowed}; {mend}".rstrip(
+    if hint in _UNIT_SLIPS and values.flat[bad[0]] <= 0.0:
+        hint = "give its magnitude, greater than zero"
+    return f"{quantity}{owner} is {values.flat[bad[0]]:g}{unit}{place}; {allowed}; {hint}".rstrip(
         "; "
     )

@@ -53,7 +53,7 @@ class Layer:
             check("poisson_ratio", self.poisson_ratio, where)
 
     def dielectric(self) -> tuple[Reals, Reals]:
-        """Give relative permittivity and Poisson's ratio, or say which is missing."""
+        """Return relative permittivity and Poisson's ratio, or say which is missing."""
         if self.relative_permittivity is None or self.poisson_ratio is None:
             missing = "relative_permittivity" if self.relative_permittivity is None else ""
             missing = missing or "poisson_ratio"

@@ -24,7 +24,7 @@ InPlane: TypeAlias = Literal["poisson", "maxwell"]
 
 
 def drive(relative_permittivity: Reals, field_V_m: Reals, modulus_Pa: Reals) -> Reals:
-    """Give the Maxwell pressure over the modulus, `s0 = eps0 eps_r E^2 / Y`.
+    """Return the Maxwell pressure over the modulus, `s0 = eps0 eps_r E^2 / Y`.
 
     With the nominal field `V / t0` it drives `thickness_strain`; with the true field, that on the
     thinned film, it is the thickness strain itself. It is also the small-strain answer.
@@ -47,7 +47,7 @@ def drive(relative_permittivity: Reals, field_V_m: Reals, modulus_Pa: Reals) -> 
 
 
 def thickness_strain(nominal_drive: Reals) -> Reals:
-    """Give the thickness strain at equilibrium: the smallest root of `s (1 - s)^2 = s0`.
+    """Return the thickness strain at equilibrium: the smallest root of `s (1 - s)^2 = s0`.
 
     `s = (4/3) sin^2(asin(sqrt(27 s0 / 4)) / 3)`, which loses no digits at small drive.
 
@@ -70,7 +70,7 @@ def thickness_strain(nominal_drive: Reals) -> Reals:
         nominal_drive,
         0.0,
         PULL_IN_DRIVE,
-        mend="beyond 4/27 the film pulls in and has no equilibrium",
+        hint="beyond 4/27 the film pulls in and has no equilibrium",
     )
     if isinstance(nominal_drive, (float, int)):
         root = math.sqrt(min(6.75 * nominal_drive, 1.0))
@@ -81,7 +81,7 @@ def thickness_strain(nominal_drive: Reals) -> Reals:
 
 
 def paper_eq4(nominal_drive: Reals) -> Reals:
-    """Give the thickness strain as Eq. 4 prints it, for comparison with the article only.
+    """Return the thickness strain as Eq. 4 prints it, for comparison with the article only.
 
     With a positive drive the printed form solves `s (1 + s)^2 = s0`: a film that thickens. It
     loses digits below a drive of about 1e-6.
@@ -98,7 +98,7 @@ def paper_eq4(nominal_drive: Reals) -> Reals:
 
 
 def amplification(strain: Reals) -> Reals:
-    """Give what a small error of the drive grows to, `ds/ds0 = 1 / ((1 - s) (1 - 3 s))`.
+    """Return what a small error of the drive grows to, `ds/ds0 = 1 / ((1 - s) (1 - 3 s))`.
 
     It is 1 for a weakly driven film and infinite at pull-in. For relative errors multiply by
     `s0 / s`: `d ln s / d ln s0 = (1 - s) / (1 - 3 s)`.
@@ -111,13 +111,13 @@ def amplification(strain: Reals) -> Reals:
     ------
     OutOfRange : a strain that no film in equilibrium has
     """
-    within("thickness strain", strain, 0.0, PULL_IN_STRAIN, mend="a film pulls in at 1/3")
+    within("thickness strain", strain, 0.0, PULL_IN_STRAIN, hint="a film pulls in at 1/3")
     with np.errstate(divide="ignore"):
         return np.divide(1.0, (1.0 - strain) * (1.0 - 3.0 * strain))
 
 
 def pull_in_voltage(thickness_m: Reals, modulus_Pa: Reals, relative_permittivity: Reals) -> Reals:
-    """Give the voltage beyond which the film collapses, `t0 sqrt(4 Y / (27 eps0 eps_r))` `[V]`.
+    """Return the voltage beyond which the film collapses, `t0 sqrt(4 Y / (27 eps0 eps_r))` `[V]`.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ def pull_in_voltage(thickness_m: Reals, modulus_Pa: Reals, relative_permittivity
 
 
 def pull_in_field(modulus_Pa: Reals, relative_permittivity: Reals) -> Reals:
-    """Give the true field at pull-in, `sqrt(Y / (3 eps0 eps_r))`: no film ever sees a higher one.
+    """Return the true field at pull-in, `sqrt(Y / (3 eps0 eps_r))`: no film ever sees a higher one.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ def film_drive(
     relative_permittivity: Reals,
     where: str = "",
 ) -> Reals:
-    """Give the nominal drive of a film under voltage, refusing one that would pull in.
+    """Return the nominal drive of a film under voltage, refusing one that would pull in.
 
     Parameters
     ----------
@@ -188,7 +188,7 @@ def film_drive(
 
 
 def in_plane_strain(strain: Reals, poisson_ratio: Reals, rule: InPlane) -> Reals:
-    """Give the free in-plane strain of a film whose Maxwell pressure over modulus is `s`.
+    """Return the free in-plane strain of a film whose Maxwell pressure over modulus is `s`.
 
     `poisson`: `nu s`, a plain pressure on the faces. `maxwell`: `p / (2 Y) = s / 2`, the full
     Maxwell stress; both agree for an incompressible film, nu = 1/2. The thinning is `s` under

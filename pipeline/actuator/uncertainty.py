@@ -1,65 +1,25 @@
 """What the uncertainties of cards and layers do to a prediction: first order and Monte Carlo.
 
-Inputs that rest on one calibration or one fit move together: contributions of the same source are
-one error, whichever inputs it enters. What is shared by all specimens never averages away.
+Source: JCGM 100:2008 and JCGM 101:2008.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import TypeAlias
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from deamat.actuator.ranges import Reals, within
-from deamat.actuator.strip import Floats
+from deamat.actuator.inputs import Input
+from deamat.actuator.model import Response
+from deamat.actuator.ranges import within
+from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
-from deamat.core.quantity import Contribution
-
-# From values by field of a `strip.Strip` (arrays of one shape) to the prediction, NaN where there
-# is none because the film pulls in.
-Response: TypeAlias = Callable[[Mapping[str, Floats]], Reals]
 
 _STEP = 1e-5  # relative; central differences are then good to about 1e-9
 _FAR = 2.0  # standard uncertainties: where the linear answer is held against the model
 _STRAIGHT = 0.15  # asymmetry there, up to which both methods were found to agree within 5 %
-
-
-@dataclass(frozen=True, slots=True)
-class Input:
-    """One uncertain number of a design.
-
-    Parameters
-    ----------
-    name : `compressive_modulus of sylgard-182-30to1`
-    drives : fields of a `strip.Strip` that it sets: the modulus of a material used twice sets two
-    value, unit : in SI, above zero
-    budget : standard uncertainties; one source is one error, in whichever inputs it stands;
-        those that are not shared shrink with the number of specimens
-    test : what measures it (`compression of sylgard-182-30to1`), None for a declared one
-    n : specimens behind it, 0 for a declared one
-    """
-
-    name: str
-    drives: tuple[str, ...]
-    value: float
-    unit: str
-    budget: tuple[Contribution, ...]
-    test: str | None = None
-    n: int = 0
-
-    @property
-    def u(self) -> float:
-        """Combined standard uncertainty `[unit]`."""
-        return math.sqrt(sum(c.u**2 for c in self.budget))
-
-    def after(self, further: int) -> Input:
-        """Give the input as `further` specimens would leave it: independent parts shrink."""
-        factor = math.sqrt(self.n / (self.n + further)) if self.n else 1.0
-        budget = (c if c.shared else replace(c, u=c.u * factor) for c in self.budget)
-        return replace(self, budget=tuple(budget), n=self.n + further if self.n else 0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +49,7 @@ class MonteCarlo:
     ----------
     mean, sd : over the draws that have an equilibrium
     interval95 : 2.5 and 97.5 % quantiles of those
-    pull_in_probability : part of the draws whose film pulls in `[1]`
+    pull_in_probability : fraction of the draws whose film pulls in `[1]`
     draws : how many
     """
 
@@ -108,7 +68,7 @@ class Bar:
     ----------
     name : of the input
     low, high : prediction with the input one standard uncertainty down and up, NaN beyond pull-in
-    u : part of the standard uncertainty that it brings alone, to first order
+    u : standard uncertainty that it alone causes, to first order
     elasticity : relative change of the prediction over that of the input `[1]`
     declared : it has an uncertainty at all
     """
@@ -135,13 +95,35 @@ def first_order(inputs: Sequence[Input], response: Response) -> FirstOrder:
 
     Source: JCGM 100:2008 (GUM), 5.1 and 5.2.
     """
-    value, gradient = _gradient(inputs, response)
-    u = combined(inputs, gradient)
-    asymmetry = _asymmetry(inputs, gradient, u, value, response)
-    return FirstOrder(value, u, tuple(gradient.tolist()), asymmetry, asymmetry <= _STRAIGHT)
+    (only,) = first_orders(inputs, response, 1)
+    return only
 
 
-def combined(inputs: Sequence[Input], gradient: Floats | Sequence[float]) -> float:
+def first_orders(inputs: Sequence[Input], response: Response, points: int) -> list[FirstOrder]:
+    """Propagate uncertainties as `first_order` does, at several points of a curve at once.
+
+    Parameters
+    ----------
+    inputs : of every point
+    response : the model, from values of shape (m,) or (points, m) to (points, m)
+    points : how many
+
+    Raises
+    ------
+    FitRefused : the film pulls in at the values themselves, at some point
+    """
+    values, gradients = _gradients(inputs, response, points)
+    found = []
+    us = [combined(inputs, gradient) for gradient in gradients]
+    skewed = _asymmetries(inputs, gradients, us, values, response)
+    for value, u, gradient, asymmetry in zip(
+        values.tolist(), us, gradients.tolist(), skewed, strict=True
+    ):
+        found.append(FirstOrder(value, u, tuple(gradient), asymmetry, asymmetry <= _STRAIGHT))
+    return found
+
+
+def combined(inputs: Sequence[Input], gradient: FloatArray | Sequence[float]) -> float:
     """Combine the budgets of all inputs at a known gradient, each source once."""
     totals: dict[str, float] = {}
     for x, slope in zip(inputs, gradient, strict=True):
@@ -153,7 +135,7 @@ def combined(inputs: Sequence[Input], gradient: Floats | Sequence[float]) -> flo
 def monte_carlo(
     inputs: Sequence[Input], response: Response, draws: int = 20_000, seed: int = 0
 ) -> MonteCarlo:
-    """Draw the inputs from log-normal distributions with their values and uncertainties.
+    """Draw the inputs from log-normal distributions and look at the distribution of the prediction.
 
     Log-normal keeps thicknesses and moduli above zero; each source is drawn once for all inputs
     that it enters.
@@ -171,7 +153,7 @@ def monte_carlo(
     Source: JCGM 101:2008.
     """
     within("draws", draws, 100, 10_000_000)
-    found = np.broadcast_to(response(sample(inputs, draws, seed)), (draws,))
+    found = np.broadcast_to(response(_sample(inputs, draws, seed)), (draws,))
     good = found[np.isfinite(found)]
     lost = 1.0 - good.size / draws
     if lost > 0.5:
@@ -185,11 +167,34 @@ def monte_carlo(
     )
 
 
-def sample(inputs: Sequence[Input], draws: int, seed: int) -> dict[str, Floats]:
-    """Draw values by field of a strip, shape (draws,) each; see `monte_carlo`."""
+def tornado(inputs: Sequence[Input], prediction: FirstOrder, response: Response) -> tuple[Bar, ...]:
+    """Move each input by its standard uncertainty alone; the widest bar first.
+
+    Inputs without a declared uncertainty come last, by elasticity: their bars are not short, they
+    are unknown.
+
+    Parameters
+    ----------
+    inputs, prediction, response : from `first_order` of this response at these inputs
+    """
+    u = np.array([x.u for x in inputs])
+    moved = response(_moved(inputs, np.concatenate([-np.diag(u), np.diag(u)])))
+    low, high = np.reshape(np.broadcast_to(moved, (2 * len(inputs),)), (2, -1))
+    bars = [
+        Bar(
+            x.name, float(low[i]), float(high[i]), abs(slope) * x.u,
+            slope * x.value / prediction.value, x.u > 0,
+        )
+        for i, (x, slope) in enumerate(zip(inputs, prediction.gradient, strict=True))
+    ]  # fmt: skip
+    return tuple(sorted(bars, key=lambda b: (b.declared, b.u, abs(b.elasticity)), reverse=True))
+
+
+def _sample(inputs: Sequence[Input], draws: int, seed: int) -> dict[str, FloatArray]:
+    """Draw values by field of a strip, shape (draws,) each."""
     rng = np.random.default_rng(seed)
-    drawn: dict[str, Floats] = {}
-    values: dict[str, Floats] = {}
+    drawn: dict[str, FloatArray] = {}
+    values: dict[str, FloatArray] = {}
     for x in inputs:
         error = np.zeros(draws)
         for c in x.budget:
@@ -202,51 +207,46 @@ def sample(inputs: Sequence[Input], draws: int, seed: int) -> dict[str, Floats]:
     return values
 
 
-def tornado(inputs: Sequence[Input], response: Response) -> tuple[Bar, ...]:
-    """Move each input by its standard uncertainty alone; the widest bar first.
-
-    Inputs without a declared uncertainty come last, by elasticity: their bars are not short, they
-    are unknown.
-    """
-    value, gradient = _gradient(inputs, response)
-    u = np.array([x.u for x in inputs])
-    moved = response(_moved(inputs, np.concatenate([-np.diag(u), np.diag(u)])))
-    low, high = np.reshape(np.broadcast_to(moved, (2 * len(inputs),)), (2, -1))
-    bars = [
-        Bar(
-            x.name, float(low[i]), float(high[i]), abs(float(gradient[i])) * x.u,
-            float(gradient[i]) * x.value / value, x.u > 0,
-        )
-        for i, x in enumerate(inputs)
-    ]  # fmt: skip
-    return tuple(sorted(bars, key=lambda b: (b.declared, b.u, abs(b.elasticity)), reverse=True))
-
-
-def _gradient(inputs: Sequence[Input], response: Response) -> tuple[float, Floats]:
+def _gradients(
+    inputs: Sequence[Input], response: Response, points: int
+) -> tuple[FloatArray, FloatArray]:
+    """Return values, shape (points,), and central differences, shape (points, inputs)."""
     steps = np.diag([_STEP * x.value for x in inputs])
     zero = np.zeros((1, len(inputs)))
     found = response(_moved(inputs, np.concatenate([zero, steps, -steps])))
-    values = np.broadcast_to(found, (2 * len(inputs) + 1,))
+    values = np.broadcast_to(found, (points, 2 * len(inputs) + 1))
     if not np.isfinite(values).all():
         raise FitRefused("the film is at pull-in: lower the voltage")
-    up, down = values[1:].reshape(2, -1)
-    return float(values[0]), (up - down) / (2.0 * np.diagonal(steps))
+    up, down = np.split(values[:, 1:], 2, axis=1)
+    return values[:, 0], (up - down) / (2.0 * np.diagonal(steps))
 
 
-def _moved(inputs: Sequence[Input], steps: Floats) -> dict[str, Floats]:
-    """Give values by field, with each row of `steps`, shape (m, inputs), added."""
-    return {field: x.value + steps[:, i] for i, x in enumerate(inputs) for field in x.drives}
+def _moved(inputs: Sequence[Input], steps: FloatArray) -> dict[str, FloatArray]:
+    """Return values by field with steps added, whose last axis counts the inputs."""
+    return {field: x.value + steps[..., i] for i, x in enumerate(inputs) for field in x.drives}
 
 
-def _asymmetry(
-    inputs: Sequence[Input], gradient: Floats, u: float, value: float, response: Response
-) -> float:
+def _asymmetries(
+    inputs: Sequence[Input],
+    gradients: FloatArray,
+    us: Sequence[float],
+    values: FloatArray,
+    response: Response,
+) -> list[float]:
     # Along the direction in which the prediction is uncertain, not along each input alone
-    if u == 0.0:
-        return 0.0
     own = np.array([x.u for x in inputs])
-    direction = _FAR * gradient * own**2 / np.linalg.norm(gradient * own)
-    up, down = np.broadcast_to(response(_moved(inputs, np.array([direction, -direction]))), (2,))
-    if not (np.isfinite(up) and np.isfinite(down)):
-        return math.inf
-    return float(abs(up + down - 2.0 * value) / abs(up - down))
+    directions = np.zeros_like(gradients)
+    for i, (gradient, u) in enumerate(zip(gradients, us, strict=True)):
+        if u:
+            directions[i] = _FAR * gradient * own**2 / np.linalg.norm(gradient * own)
+    both = np.stack([directions, -directions], axis=1)
+    found = np.broadcast_to(response(_moved(inputs, both)), (len(us), 2))
+    skewed = []
+    for (up, down), u, value in zip(found, us, values, strict=True):
+        if u == 0.0:
+            skewed.append(0.0)
+        elif np.isfinite(up) and np.isfinite(down):
+            skewed.append(float(abs(up + down - 2.0 * value) / abs(up - down)))
+        else:
+            skewed.append(math.inf)
+    return skewed

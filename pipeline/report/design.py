@@ -190,7 +190,7 @@ def _tell(axes: Axes, row: int, bar: Bar, middle: float, reach: float) -> None:
 
 
 def _title(design: Design) -> str:
-    r, strip = design.request, design.strip
+    r, strip = design.case.request, design.strip
     passive_um, film_um = (
         from_si(float(t), "um") for t in (strip.passive_thickness_m, strip.film_thickness_m)
     )

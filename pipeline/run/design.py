@@ -10,7 +10,6 @@ from typing import Any
 from deamat.actuator.compositions import compare as compare_all
 from deamat.actuator.compositions import pareto as pareto_front
 from deamat.actuator.declared import Designs, load_designs
-from deamat.actuator.design import Request
 from deamat.actuator.design import design as answer
 from deamat.actuator.present import (
     compositions_document,
@@ -20,6 +19,7 @@ from deamat.actuator.present import (
     pareto_document,
     pareto_text,
 )
+from deamat.actuator.request import Request
 from deamat.core.errors import ConfigError
 from deamat.core.units import from_si, read_quantity
 from deamat.materials.card import MaterialCard, read_card

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import re
+from collections import Counter
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,10 +13,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from deamat.actuator import case, model
+from deamat.actuator.card_values import MixedConditions
 from deamat.actuator.compositions import compare, pareto
 from deamat.actuator.declared import load_designs
-from deamat.actuator.design import Request, design
-from deamat.actuator.ingredients import MixedConditions
+from deamat.actuator.design import design
 from deamat.actuator.present import (
     compositions_text,
     design_document,
@@ -22,6 +25,7 @@ from deamat.actuator.present import (
     pareto_document,
     pareto_text,
 )
+from deamat.actuator.request import Request
 from deamat.core.errors import ConfigError, MissingProperty, OutOfRange
 from deamat.core.records import Condition
 from deamat.materials.card import MaterialCard
@@ -38,14 +42,14 @@ def test_without_a_voltage_the_film_goes_as_far_as_it_may() -> None:
     assert found.failure_probability == pytest.approx(0.01, rel=1e-9)
     low, high = found.failure_interval95 or (0.0, 0.0)
     assert low < 0.01 < high
-    assert found.strip.passive_thickness_m == found.best_passive_thickness_m
+    assert found.strip.passive_thickness_m == found.drive.best_passive_thickness_m
     assert found.prediction.value == pytest.approx(found.points[-1].curvature_per_m, rel=1e-12)
     assert [p.voltage_V for p in found.points][-1] == found.voltage_V
     assert np.all(np.diff([p.curvature_per_m for p in found.points]) > 0)
     inputs = {x.name for x in found.inputs}
     assert {"breakdown_strength of soft", "weibull_shape of soft"} <= inputs
     # 500 mm2 of strip, 100 mm2 tested
-    assert found.ingredients.area_ratio == pytest.approx(5.0)
+    assert found.case.values.area_ratio == pytest.approx(5.0)
     assert found.notes[0] == ("breakdown scaled to an electrode 5 times as large as the tested one")
 
 
@@ -59,12 +63,31 @@ def test_a_given_voltage_leaves_the_breakdown_out_of_the_curvature() -> None:
     }  # fmt: skip
 
 
+def test_cards_and_limits_are_looked_up_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    counts: Counter[str] = Counter()
+
+    def counted(name: str) -> None:
+        original: Callable[..., object] = getattr(case, name)
+
+        def count(*arguments: object) -> object:
+            counts[name] += 1
+            return original(*arguments)
+
+        monkeypatch.setattr(case, name, count)
+
+    counted("gather")
+    counted("voltage_limits")
+    monkeypatch.setattr(model, "voltage_limits", None)  # a given voltage needs no limits of draws
+    assert design(cards(), declared(), AT_4_KV).case.limits.breakdown_V is not None
+    assert counts == {"gather": 1, "voltage_limits": 1}
+
+
 def test_one_material_in_two_layers_is_one_input() -> None:
     found = design(cards(), declared(), replace(AT_4_KV, de="stiff"))
     names = [x.name for x in found.inputs]
     assert names.count("compressive_modulus of stiff") == 1
     assert found.inputs[0].drives == ("film_modulus_Pa", "passive_modulus_Pa")
-    assert len(list(found.ingredients.records())) == 4
+    assert len(list(found.case.values.records())) == 4
 
 
 def test_two_materials_of_one_campaign_share_its_calibration() -> None:
@@ -94,7 +117,7 @@ def test_no_breakdown_means_no_range_of_voltage() -> None:
         "test its breakdown, or give a voltage"
     )
     found = design(cards(breakdown=False), declared(), AT_4_KV)
-    assert (found.breakdown_voltage_V, found.failure_probability) == (None, None)
+    assert (found.case.limits.breakdown_V, found.failure_probability) == (None, None)
     assert found.notes[0].startswith("the breakdown limit is unknown: soft has no breakdown")
 
 

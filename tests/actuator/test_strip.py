@@ -7,23 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from deamat.actuator.beam import actuate
+from deamat.actuator.beam import actuate as beam_under_voltage
+from deamat.actuator.declared import Geometry
+from deamat.actuator.limits import Allowed, breakdown_field, failure_probability, voltage_limits
+from deamat.actuator.model import actuate, best_passive, blocked_force
+from deamat.actuator.ranges import Reals
 from deamat.actuator.stack import Layer, Role, Stack
 from deamat.actuator.strain import pull_in_voltage
-from deamat.actuator.strip import (
-    Allowed,
-    Strip,
-    best_passive,
-    blocked_force,
-    breakdown_field,
-    breakdown_voltage,
-    curvature,
-    curvature_or_nan,
-    failure_probability,
-    highest_voltage,
-    pull_in_limit,
-    true_field,
-)
+from deamat.actuator.strip import Strip
 from deamat.core.errors import MissingProperty, OutOfRange
 
 STRIP = Strip(
@@ -40,6 +31,15 @@ STRIP = Strip(
     weibull_shape=8.0,
 )
 ALLOWED = Allowed(0.01, 0.9)
+SIZE = Geometry(length_mm=50.0, width_mm=10.0, source="made up")
+
+
+def curvature(strip: Strip, voltage_V: Reals) -> Reals:
+    return actuate(strip, voltage_V).curvature_per_m
+
+
+def chance(strip: Strip, voltage_V: Reals) -> Reals:
+    return actuate(strip, voltage_V).failure_probability()
 
 
 def stack() -> Stack:
@@ -52,10 +52,10 @@ def stack() -> Stack:
 
 @pytest.mark.parametrize("voltage_V", [100.0, 6400.0, 12_000.0])
 def test_it_is_the_general_beam(voltage_V: float) -> None:
-    beam = actuate(stack(), voltage_V, "poisson")
+    beam = beam_under_voltage(stack(), voltage_V, "poisson")
     assert curvature(STRIP, voltage_V) == pytest.approx(beam.curvature_per_m, rel=1e-13)
     force = 1.5 * beam.bending_stiffness_N_m2 * beam.curvature_per_m / 0.05
-    assert blocked_force(STRIP, voltage_V, 0.05, 0.01) == pytest.approx(force, rel=1e-13)
+    assert blocked_force(actuate(STRIP, voltage_V), SIZE) == pytest.approx(force, rel=1e-13)
 
 
 def test_the_best_passive_layer_is_the_best_one_of_the_thinned_film() -> None:
@@ -67,42 +67,58 @@ def test_the_best_passive_layer_is_the_best_one_of_the_thinned_film() -> None:
     assert curvature(replace(STRIP, passive_thickness_m=made), 12_000.0) < bent[1]
 
 
-def test_the_limit_is_the_allowed_part_of_the_films() -> None:
-    voltage = float(highest_voltage(STRIP, ALLOWED))
-    assert voltage == breakdown_voltage(STRIP, ALLOWED) < pull_in_limit(STRIP, ALLOWED)
-    assert true_field(STRIP, voltage) == pytest.approx(breakdown_field(STRIP, ALLOWED), rel=1e-9)
-    assert failure_probability(STRIP, voltage) == pytest.approx(0.01, rel=1e-9)
+def test_the_limit_is_the_allowed_fraction_of_the_films() -> None:
+    limits = voltage_limits(STRIP, ALLOWED)
+    voltage = float(limits.highest_V)
+    assert limits.breakdown_V is not None
+    assert voltage == limits.breakdown_V < limits.pull_in_V
+    field = actuate(STRIP, voltage).true_field_V_m
+    assert field == pytest.approx(breakdown_field(STRIP, ALLOWED), rel=1e-9)
+    assert chance(STRIP, voltage) == pytest.approx(0.01, rel=1e-9)
 
 
 def test_a_tough_film_pulls_in_first() -> None:
     tough = replace(STRIP, breakdown_strength_V_m=200e6)
-    assert breakdown_voltage(tough, ALLOWED) == np.inf
+    limits = voltage_limits(tough, ALLOWED)
+    assert limits.breakdown_V == np.inf
     limit = 0.9 * pull_in_voltage(500e-6, 1e5, 2.6)
-    assert highest_voltage(tough, ALLOWED) == pytest.approx(limit, rel=1e-15)
-    assert failure_probability(tough, limit / 0.9 * 1.001) == 1.0
+    assert limits.highest_V == pytest.approx(limit, rel=1e-15)
+    assert chance(tough, limit / 0.9 * 1.001) == 1.0
+
+
+def test_limits_of_many_strips_are_those_of_each() -> None:
+    moduli = np.array([5e4, 1e5, 2e5])
+    together = np.asarray(voltage_limits(replace(STRIP, film_modulus_Pa=moduli), ALLOWED).highest_V)
+    for modulus, highest in zip(moduli.tolist(), together.tolist(), strict=True):
+        alone = voltage_limits(replace(STRIP, film_modulus_Pa=modulus), ALLOWED).highest_V
+        assert highest == pytest.approx(float(alone), rel=1e-14)
 
 
 def test_a_larger_electrode_holds_a_weaker_spot() -> None:
     """A strip of nine tested areas fails as nine of them in a row."""
-    one = failure_probability(STRIP, 5000.0)
-    assert failure_probability(STRIP, 5000.0, 9.0) == pytest.approx(1 - (1 - one) ** 9, rel=1e-9)
-    larger = Allowed(0.01, 0.9, 9.0)
-    voltage = highest_voltage(STRIP, larger)
-    assert failure_probability(STRIP, voltage, 9.0) == pytest.approx(0.01, rel=1e-9)
+    one = chance(STRIP, 5000.0)
+    large = replace(STRIP, area_ratio=9.0)
+    assert chance(large, 5000.0) == pytest.approx(1 - (1 - one) ** 9, rel=1e-9)
+    voltage = voltage_limits(large, ALLOWED).highest_V
+    assert chance(large, voltage) == pytest.approx(0.01, rel=1e-9)
 
 
 def test_beyond_pull_in_there_is_no_number() -> None:
-    voltages = np.array([1000.0, 20_000.0])
-    assert np.isnan(curvature_or_nan(STRIP, voltages)).tolist() == [False, True]
-    with pytest.raises(
-        OutOfRange, match="voltage_V of the de layer is 20000 V; allowed is 0 to 12684 V"
-    ):
-        curvature(STRIP, 20_000.0)
+    actuated = actuate(STRIP, np.array([1000.0, 20_000.0]))
+    force = blocked_force(actuated, SIZE)
+    for numbers in (actuated.curvature_per_m, actuated.true_field_V_m, force):
+        assert np.isnan(numbers).tolist() == [False, True]
 
 
 def test_an_unknown_breakdown_is_named() -> None:
+    unknown = replace(STRIP, weibull_shape=None)
+    limits = voltage_limits(unknown, ALLOWED)
+    assert limits.breakdown_V is None
+    assert limits.pull_in_V == voltage_limits(STRIP, ALLOWED).pull_in_V
     with pytest.raises(MissingProperty, match="the breakdown limit is unknown: the card of the de"):
-        highest_voltage(replace(STRIP, weibull_shape=None), ALLOWED)
+        _ = limits.highest_V
+    with pytest.raises(MissingProperty, match="the breakdown limit is unknown: the card of the de"):
+        failure_probability(unknown, 1e6)
 
 
 @pytest.mark.parametrize(("probability", "fraction"), [(1.0, 0.9), (0.01, 90.0), (0.0, 0.9)])

@@ -10,12 +10,14 @@ import numpy as np
 import pytest
 from scipy.special import ndtr
 
-from deamat.actuator.design import respond
+from deamat.actuator.inputs import Input
+from deamat.actuator.limits import Allowed
+from deamat.actuator.model import respond
 from deamat.actuator.next_test import next_tests, plan
 from deamat.actuator.ranges import Reals
 from deamat.actuator.strain import pull_in_voltage
-from deamat.actuator.strip import Allowed, Floats
-from deamat.actuator.uncertainty import Input, first_order, monte_carlo, tornado
+from deamat.actuator.uncertainty import first_order, monte_carlo, tornado
+from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
 from deamat.core.quantity import Contribution
 
@@ -41,7 +43,7 @@ def inputs(relative: float, shared: float = 0.0) -> tuple[Input, ...]:
     return tuple(listed)
 
 
-def linear(values: Mapping[str, Floats]) -> Reals:
+def linear(values: Mapping[str, FloatArray]) -> Reals:
     return 2.0 * values["film_modulus_Pa"] - 0.1 * values["passive_modulus_Pa"]
 
 
@@ -77,7 +79,8 @@ def test_at_the_breakdown_limit_the_strength_counts_twice() -> None:
     strength = Input(
         "strength", ("breakdown_strength_V_m",), 20e6, "V/m", (Contribution("fit", 2e5, False),)
     )
-    bar = tornado([strength], respond(STRIP, allowed))[0]
+    response = respond(STRIP, allowed)
+    bar = tornado([strength], first_order([strength], response), response)[0]
     assert bar.elasticity == pytest.approx(2.0, abs=0.2)  # and a little for the thinner film
 
 
@@ -100,7 +103,8 @@ def test_a_film_at_pull_in_is_refused() -> None:
 
 def test_the_tornado_has_the_widest_bar_on_top_and_the_unknown_ones_below() -> None:
     unknown = Input("Poisson's ratio", ("poisson_ratio",), 0.49, "1", ())
-    bars = tornado([unknown, *inputs(0.02)], respond(STRIP, 0.5 * PULL_IN_V))
+    response, listed = respond(STRIP, 0.5 * PULL_IN_V), [unknown, *inputs(0.02)]
+    bars = tornado(listed, first_order(listed, response), response)
     assert bars[0].name == "film thickness"
     assert [b.u for b in bars] == sorted((b.u for b in bars), reverse=True)
     assert bars[-1].name == "Poisson's ratio"

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from deamat.actuator.compositions import compare, pareto
-from deamat.actuator.design import Request, design
+from deamat.actuator.design import design
+from deamat.actuator.request import Request
 from deamat.core.errors import MissingProperty
 from deamat.report.design import (
     compositions_figure,
