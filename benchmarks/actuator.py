@@ -15,7 +15,6 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import solve_bvp
 
 from deamat.actuator.beam import actuate
@@ -25,8 +24,8 @@ from deamat.actuator.ladder import NEGLECTS, Actuator, choose, errors, evaluate
 from deamat.actuator.ranges import Reals
 from deamat.actuator.stack import FIRST_LAYER_DOWN, Layer, Role, Stack
 from deamat.actuator.strain import VACUUM_PERMITTIVITY_F_m
+from deamat.core.arrays import FloatArray
 
-Floats = NDArray[np.float64]
 BLOCK, BLOCKS, ONE_BY_ONE, STRIPS = 10_000, 20, 2000, 2000
 PERMITTIVITY, POISSON_RATIO, VOLTAGE_V = 2.58, 0.49, 3000.0
 rng = np.random.default_rng(0)
@@ -42,7 +41,7 @@ def per_second(count: int, work: Callable[[], object], repeat: int = 5) -> float
 
 
 def draw(count: int) -> Unimorph:
-    def between(low: float, high: float) -> Floats:
+    def between(low: float, high: float) -> FloatArray:
         return rng.uniform(low, high, count)
 
     return Unimorph(
@@ -116,10 +115,10 @@ def plain_beam(tp: float, yp: float, ta: float, ya: float, te: float, ye: float)
 
 
 def by_scipy(load: float, turn: float) -> tuple[float, float]:
-    def slope(t: Floats, y: Floats) -> Floats:
+    def slope(t: FloatArray, y: FloatArray) -> FloatArray:
         return np.array([y[1], -load * (1 - t) * np.cos(y[0]), np.cos(y[0]), np.sin(y[0])])
 
-    def ends(root: Floats, tip: Floats) -> Floats:
+    def ends(root: FloatArray, tip: FloatArray) -> FloatArray:
         return np.array([root[0], tip[1] - turn, root[2], root[3]])
 
     mesh = np.linspace(0, 1, 21)

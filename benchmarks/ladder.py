@@ -19,7 +19,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from benchmarks.timing import (
     RESULTS,
@@ -35,6 +34,7 @@ from deamat.actuator.ladder import NEGLECTS, Actuator, Aim, Answer, Rung, choose
 from deamat.actuator.ranges import Reals
 from deamat.actuator.stack import FIRST_LAYER_DOWN, ON_EDGE, Layer, Orientation, Role, Stack
 from deamat.actuator.strain import pull_in_voltage
+from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused, OutOfRange
 from deamat.report.style import (
     COLOURS,
@@ -46,7 +46,6 @@ from deamat.report.style import (
     set_title,
 )
 
-Floats = NDArray[np.float64]
 POISSON_RATIO, WIDTH_m, DENSITY_kg_m3 = 0.49, 0.01, 1030.0
 TOLERANCES = (3e-1, 1e-1, 3e-2, 1e-2, 1e-3, 1e-4)
 TIMED = 200
@@ -131,7 +130,7 @@ def costs_us(draws: Sequence[Draw]) -> dict[str, float]:
     return {name: 1e6 * undisturbed_s(times) / len(some) for name, times in seconds.items()}
 
 
-def row(name: str, cost_us: float, apart: Floats, bent: Floats) -> Row:
+def row(name: str, cost_us: float, apart: FloatArray, bent: FloatArray) -> Row:
     """Give quantiles of the errors of tip (in lengths) and curvature (relative)."""
     return {
         "model": name,
@@ -215,7 +214,7 @@ def _turning(curvature_per_m: float) -> float:
     return low
 
 
-SWEEPS: dict[str, tuple[str, Callable[[float], Actuator], Floats, Aim]] = {
+SWEEPS: dict[str, tuple[str, Callable[[float], Actuator], FloatArray, Aim]] = {
     "drive": ("voltage over that of pull-in", by_drive, np.linspace(0.03, 0.99, 33), "curvature"),
     "electrodes": (
         "stiffness of electrodes over film",
@@ -228,7 +227,9 @@ SWEEPS: dict[str, tuple[str, Callable[[float], Actuator], Floats, Aim]] = {
 }
 
 
-def sweep(make: Callable[[float], Actuator], points: Floats, aim: Aim) -> dict[Rung, Floats]:
+def sweep(
+    make: Callable[[float], Actuator], points: FloatArray, aim: Aim
+) -> dict[Rung, FloatArray]:
     """Give the error along a sweep: of the tip in lengths, or of the curvature, relative."""
     found: dict[Rung, list[float]] = {rung: [] for rung in NEGLECTS}
     for x in points.tolist():
@@ -268,7 +269,7 @@ def chart(rows: Sequence[Row], designs: int) -> tuple[Path, Path]:
         return save_figure(figure, axes, RESULTS, "ladder", title, synthetic=True)
 
 
-def validity_map(errors: dict[str, dict[Rung, Floats]]) -> tuple[Path, Path]:
+def validity_map(errors: dict[str, dict[Rung, FloatArray]]) -> tuple[Path, Path]:
     """Draw for each cause of trouble where each rung crosses one percent."""
     title = (
         "Where rungs stop to hold: one strip (304 µm on 446 µm, 0.957 MPa), one number at a time; "
@@ -291,7 +292,7 @@ def validity_map(errors: dict[str, dict[Rung, Floats]]) -> tuple[Path, Path]:
         return save_figure(figure, panels[0], RESULTS, "ladder_validity", title, synthetic=True)
 
 
-def _panel(axes: Axes, points: Floats, errors: dict[Rung, Floats]) -> None:
+def _panel(axes: Axes, points: FloatArray, errors: dict[Rung, FloatArray]) -> None:
     for i, (rung, error) in enumerate(errors.items()):
         if rung != "elastica":
             axes.plot(points, np.maximum(error, 1e-9), color=COLOURS[i], label=rung)
@@ -299,7 +300,7 @@ def _panel(axes: Axes, points: Floats, errors: dict[Rung, Floats]) -> None:
     axes.set(yscale="log", ylim=(1e-4, 3))
 
 
-def first_beyond(points: Floats, error: Floats) -> float | str:
+def first_beyond(points: FloatArray, error: FloatArray) -> float | str:
     """Give where an error first passes one percent; empty if it never does."""
     over = np.flatnonzero(error > _GOOD)
     return float(points[over[0]]) if over.size else ""

@@ -17,8 +17,8 @@ from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from deamat.core.arrays import FloatArray
 from deamat.core.atomic import write_atomically
 
 Item = TypeVar("Item")
@@ -38,7 +38,7 @@ def interleaved(
     parts: Sequence[Sequence[Item]],
     rounds: int,
     clock: Callable[[], float] = time.process_time,
-) -> dict[str, NDArray[np.float64]]:
+) -> dict[str, FloatArray]:
     """Let every contender do every item, part by part in turn: a drift of the machine cancels.
 
     Who begins moves on by one from part to part: what a contender leaves in the caches helps or
@@ -65,7 +65,7 @@ def interleaved(
     return {name: np.array(times) for name, times in seconds.items()}
 
 
-def undisturbed_s(seconds: NDArray[np.float64]) -> float:
+def undisturbed_s(seconds: FloatArray) -> float:
     """Add up the least that any round took for each item `[s]`.
 
     Who shares the core and its caches slows code by up to twice, and code that computes more than

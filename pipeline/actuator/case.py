@@ -66,9 +66,7 @@ def design_case(cards: Cards, declared: Designs, request: Request) -> Case:
 
     Parameters
     ----------
-    cards : a database of `open_database`, or any mapping of material id to card
-    declared : `config/designs.toml`
-    request : what is wanted
+    cards, declared, request : as for `design.design`
 
     Raises
     ------

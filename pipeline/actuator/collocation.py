@@ -11,7 +11,8 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import legendre
-from numpy.typing import NDArray
+
+from deamat.core.arrays import FloatArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -26,11 +27,11 @@ class Grid:
     from_root : `f` to `int_0^t f`, shape (N, N)
     """
 
-    points: NDArray[np.float64]
-    weights: NDArray[np.float64]
-    to_series: NDArray[np.float64]
-    sag: NDArray[np.float64]
-    from_root: NDArray[np.float64]
+    points: FloatArray
+    weights: FloatArray
+    to_series: FloatArray
+    sag: FloatArray
+    from_root: FloatArray
 
 
 @lru_cache(maxsize=32)
@@ -49,21 +50,21 @@ def grid(n: int) -> Grid:
     )
 
 
-def on_grid(series: NDArray[np.float64], n: int) -> NDArray[np.float64]:
+def on_grid(series: FloatArray, n: int) -> FloatArray:
     """Evaluate Legendre series `(..., N)` at the points of `grid(n)`, giving `(..., n)`."""
     return series @ _legendre(n, series.shape[-1]).T
 
 
 @lru_cache(maxsize=64)
-def _legendre(n: int, degrees: int) -> NDArray[np.float64]:
+def _legendre(n: int, degrees: int) -> FloatArray:
     return np.asarray(legendre.legvander(2.0 * grid(n).points - 1.0, degrees - 1))
 
 
-def evaluate(series: NDArray[np.float64], points: NDArray[np.float64]) -> NDArray[np.float64]:
+def evaluate(series: FloatArray, points: FloatArray) -> FloatArray:
     """Evaluate Legendre series `(..., N)` at points on 0..1, giving `(..., points)`."""
     return series @ legendre.legvander(2.0 * points - 1.0, series.shape[-1] - 1).T
 
 
-def integral(series: NDArray[np.float64]) -> NDArray[np.float64]:
+def integral(series: FloatArray) -> FloatArray:
     """Integrate Legendre series `(..., N)` from the root, giving `(..., N + 1)`."""
     return np.asarray(0.5 * legendre.legint(series, lbnd=-1, axis=-1), np.float64)

@@ -29,6 +29,7 @@ from deamat.actuator.collocation import evaluate, grid, integral, on_grid
 from deamat.actuator.equilibrium import Strips, rest, tips
 from deamat.actuator.ranges import Reals, check, within
 from deamat.actuator.stack import Orientation
+from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused, OutOfRange
 
 MAX_LOAD = 1e4  # g: a strip 21 times its elasto-gravity length
@@ -52,17 +53,15 @@ class Elastica:
         `error` is infinite
     """
 
-    length_m: NDArray[np.float64]
-    series: NDArray[np.float64]
-    tip_x_m: NDArray[np.float64]
-    tip_y_m: NDArray[np.float64]
-    tip_angle_rad: NDArray[np.float64]
-    error: NDArray[np.float64]
+    length_m: FloatArray
+    series: FloatArray
+    tip_x_m: FloatArray
+    tip_y_m: FloatArray
+    tip_angle_rad: FloatArray
+    error: FloatArray
     settled: NDArray[np.bool_]
 
-    def shape(
-        self, positions: NDArray[np.float64]
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    def shape(self, positions: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return `x`, `y` `[m]` and the tangent angle `[rad]`, each `(..., points)`.
 
         Parameters
@@ -157,9 +156,9 @@ def solve(
 
 
 def _assemble(
-    series: NDArray[np.float64],
-    error: NDArray[np.float64],
-    length: NDArray[np.float64],
+    series: FloatArray,
+    error: FloatArray,
+    length: FloatArray,
     shape: tuple[int, ...],
 ) -> Elastica:
     settled = np.isfinite(error)

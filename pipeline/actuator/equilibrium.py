@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from deamat.actuator.collocation import Grid, grid, on_grid
+from deamat.core.arrays import FloatArray
 
 # Load at which an upright strip buckles: (9/4) j^2, j the first zero of the Bessel function J(-1/3)
 # (Greenhill 1881). Below it the energy is convex whatever the curl, so there is one shape only.
@@ -27,22 +28,20 @@ _LARGEST_STEP_rad = 1.2  # a tangent that turns further in one step has jumped t
 _SMALLEST_STEP = 1e-3
 _ENERGY_POINTS = 61
 
-Array = NDArray[np.float64]
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Strips:
     """Loads, turns and angles of gravity, each of shape (strips,)."""
 
-    load: Array
-    turn: Array
-    angle: Array
+    load: FloatArray
+    turn: FloatArray
+    angle: FloatArray
 
     def __getitem__(self, which: NDArray[np.intp] | NDArray[np.bool_]) -> Strips:
         return Strips(self.load[which], self.turn[which], self.angle[which])
 
 
-def rest(strips: Strips, tolerance: float) -> tuple[Array, Array]:
+def rest(strips: Strips, tolerance: float) -> tuple[FloatArray, FloatArray]:
     """Find how strips come to rest: weight first, then curl, each raised slowly.
 
     Parameters
@@ -72,12 +71,12 @@ def rest(strips: Strips, tolerance: float) -> tuple[Array, Array]:
     return series, error
 
 
-def tips(theta: Array, on: Grid) -> Array:
+def tips(theta: FloatArray, on: Grid) -> FloatArray:
     """Return tip positions for tangent angles `(strips, N)`, in lengths, as `(strips, 2)`."""
     return np.stack([np.cos(theta) @ on.weights, np.sin(theta) @ on.weights], axis=-1)
 
 
-def _follow(strips: Strips, on: Grid) -> tuple[Array, NDArray[np.bool_]]:
+def _follow(strips: Strips, on: Grid) -> tuple[FloatArray, NDArray[np.bool_]]:
     """Raise the weight (path 0 to 1), then the curl (1 to 2); say who arrived."""
     light = strips.load < SELF_BUCKLING_LOAD
     path = np.where(light, 1.0, 0.0)
@@ -109,8 +108,8 @@ def _follow(strips: Strips, on: Grid) -> tuple[Array, NDArray[np.bool_]]:
 
 
 def _newton(
-    strips: Strips, theta: Array, on: Grid, tolerance: float, iterations: int
-) -> tuple[Array, Array]:
+    strips: Strips, theta: FloatArray, on: Grid, tolerance: float, iterations: int
+) -> tuple[FloatArray, FloatArray]:
     """Improve tangent angles; return them with the size of each strip's last step."""
     theta = theta.copy()
     last = np.full(theta.shape[0], np.inf)
@@ -133,7 +132,9 @@ def _newton(
     return theta, last
 
 
-def _refine(strips: Strips, theta: Array, level: int, tolerance: float) -> tuple[Array, Array]:
+def _refine(
+    strips: Strips, theta: FloatArray, level: int, tolerance: float
+) -> tuple[FloatArray, FloatArray]:
     """Solve again with more points until the tips no longer move."""
     series = np.zeros((theta.shape[0], LEVELS[-1]))
     error = np.full(theta.shape[0], np.inf)
@@ -155,7 +156,7 @@ def _refine(strips: Strips, theta: Array, level: int, tolerance: float) -> tuple
     return series, error
 
 
-def _stable(strips: Strips, theta: Array, on: Grid) -> NDArray[np.bool_]:
+def _stable(strips: Strips, theta: FloatArray, on: Grid) -> NDArray[np.bool_]:
     """Say which shapes are minima of the energy `int eta'^2 + g (1 - t) cos(a - theta) eta^2`.
 
     Where the cosine is nowhere negative enough to buckle an upright strip the answer is yes; the

@@ -6,8 +6,9 @@ import re
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
+
+from deamat.core.arrays import FloatArray
 
 _LOW_IMPEDANCE_ohm = 500.0  # where the makers' tables change from k_a to k_b
 _LOW_FREQUENCY_Hz = 100.0
@@ -62,12 +63,12 @@ class LcrAccuracy(Declared):
 
     def limit(
         self,
-        frequency_Hz: NDArray[np.float64],
-        impedance_ohm: NDArray[np.float64],
+        frequency_Hz: FloatArray,
+        impedance_ohm: FloatArray,
         level_V: float,
         *,
         fast: bool,
-    ) -> NDArray[np.float64]:
+    ) -> FloatArray:
         """Give the relative limit of error, shape (n,).
 
         Parameters
@@ -88,7 +89,7 @@ class LcrAccuracy(Declared):
         low, high = self.level_V
         basic = self.basic * (1.0 if low <= level_V <= high else self.other_level_factor)
         speed = 2.0 if fast else 1.0
-        limit: NDArray[np.float64] = self.temperature * (
+        limit: FloatArray = self.temperature * (
             speed * (basic + k) + self.interpolation + self.leads
         )
         return limit

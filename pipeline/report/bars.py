@@ -7,11 +7,10 @@ import textwrap
 from collections.abc import Sequence
 
 from matplotlib.axes import Axes
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from deamat.core.units import from_si
 from deamat.report.moduli import ModulusBar
-from deamat.report.style import COLOURS, plain
+from deamat.report.style import COLOURS, decade_ticks, plain
 
 _LOGARITHMIC_FROM = 20.0  # largest over smallest modulus
 _ROOM_FOR_VALUES = 0.2  # part of the axis to the right of the longest interval
@@ -104,9 +103,7 @@ def _scale(axes: Axes, bars: Sequence[ModulusBar], unit: str) -> None:
     start = _round_below(min([end for end in ends if end > 0]) / 1.3)
     axes.set_xscale("log", nonpositive="clip")
     axes.set_xlim(start, start * (high / start) ** (1 / (1 - _ROOM_FOR_VALUES)))
-    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high / start < 2e3 else (1.0,)))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
-    axes.xaxis.set_minor_formatter(NullFormatter())
+    decade_ticks(axes.xaxis, (1.0, 2.0, 5.0) if high / start < 2e3 else (1.0,))
 
 
 def _round_below(x: float) -> float:

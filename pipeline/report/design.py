@@ -10,7 +10,6 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter
 
 from deamat.actuator.compositions import Composition, Trade
 from deamat.actuator.design import Design
@@ -24,6 +23,7 @@ from deamat.report.style import (
     new_figure,
     place_legend,
     plain,
+    plain_numbers,
     save_figure,
     set_title,
 )
@@ -124,7 +124,7 @@ def compositions_figure(
         axes.plot(math.nan, math.nan, "o", color="black", ms=3, label="optimum", ls="")
         axes.set(xlabel="thickness of the passive layer [um]", ylabel="curvature [1/m]")
         axes.set_xscale("log")
-        axes.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
+        plain_numbers(axes.xaxis)
         axes.set_ylim(bottom=0)
 
     return _written(out_dir, name, title, draw, any(c.synthetic for c in compositions))

@@ -18,10 +18,12 @@ import matplotlib
 from cycler import cycler
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.text import Text
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from deamat.core.atomic import write_atomically
 from deamat.core.errors import ConfigError
@@ -198,3 +200,15 @@ def plain(text: Text) -> Text:
     """Take a text as it is written, with no mathematics in it."""
     text.set_parse_math(False)
     return text
+
+
+def plain_numbers(axis: Axis) -> None:
+    """Write the ticks of an axis as `0.5`, `20`, `1e+06`, not as powers of ten."""
+    axis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
+
+
+def decade_ticks(axis: Axis, subs: tuple[float, ...] = (1.0, 2.0, 5.0)) -> None:
+    """Put ticks with plain numbers at these multiples of each power of ten, and no others."""
+    axis.set_major_locator(LogLocator(subs=subs))
+    plain_numbers(axis)
+    axis.set_minor_formatter(NullFormatter())

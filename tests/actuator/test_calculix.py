@@ -11,9 +11,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from deamat.actuator.beam import bend
+from deamat.core.arrays import FloatArray
 
 from .stacks import strip
 
@@ -24,7 +24,7 @@ STRAIN, POISSON_RATIO = 0.006, 0.49
 LENGTH_mm, WIDTH_mm, ALONG = 20.0, 0.5, 20
 
 
-def heights_mm() -> NDArray[np.float64]:
+def heights_mm() -> FloatArray:
     layers = strip().layers
     return np.concatenate(
         [[0.0], np.cumsum([1e3 * float(np.asarray(x.thickness_m)) for x in layers])]
@@ -105,7 +105,7 @@ def deck(held: bool) -> str:
     )  # fmt: skip
 
 
-def tables(text: str) -> dict[str, NDArray[np.float64]]:
+def tables(text: str) -> dict[str, FloatArray]:
     """Read the blocks of a .dat file: rows of node and three components."""
     found: dict[str, list[list[float]]] = {}
     name = ""
@@ -118,7 +118,7 @@ def tables(text: str) -> dict[str, NDArray[np.float64]]:
     return {name: np.array(rows) for name, rows in found.items()}
 
 
-def solved(folder: Path, held: bool) -> dict[str, NDArray[np.float64]]:
+def solved(folder: Path, held: bool) -> dict[str, FloatArray]:
     (folder / "strip.inp").write_text(deck(held))
     assert CCX is not None
     subprocess.run([CCX, "strip"], cwd=folder, capture_output=True, check=False, timeout=60)

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.integrate import solve_bvp, solve_ivp
 from scipy.special import jv
 
@@ -14,6 +13,7 @@ from deamat.actuator.beam import actuate, deflection, displacement
 from deamat.actuator.elastica import MAX_LOAD, deflect, solve
 from deamat.actuator.equilibrium import SELF_BUCKLING_LOAD
 from deamat.actuator.stack import FIRST_LAYER_DOWN, HANGING, ON_EDGE, STANDING, Orientation
+from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused, OutOfRange
 
 from .stacks import strip
@@ -36,11 +36,11 @@ def test_without_weight_it_is_an_arc(turn: float) -> None:
 def test_scipy_solve_bvp_comes_to_the_same_tip(load: float, turn: float, angle: float) -> None:
     found = solve(load, turn, angle)
 
-    def slope(t: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float64]:
+    def slope(t: FloatArray, y: FloatArray) -> FloatArray:
         bend = -load * (1 - t) * np.sin(angle - y[0])
         return np.array([y[1], bend, np.cos(y[0]), np.sin(y[0])])
 
-    def ends(root: NDArray[np.float64], tip: NDArray[np.float64]) -> NDArray[np.float64]:
+    def ends(root: FloatArray, tip: FloatArray) -> FloatArray:
         return np.array([root[0], tip[1] - turn, root[2], root[3]])
 
     mesh = np.linspace(0, 1, 101)
@@ -50,7 +50,7 @@ def test_scipy_solve_bvp_comes_to_the_same_tip(load: float, turn: float, angle: 
     assert np.hypot(found.tip_x_m - other.y[2, -1], found.tip_y_m - other.y[3, -1]) < 1e-8
 
 
-def _slope(t: float, y: NDArray[np.float64], load: float, angle: float) -> list[float]:
+def _slope(t: float, y: FloatArray, load: float, angle: float) -> list[float]:
     bend = -load * (1 - t) * math.sin(angle - y[0])
     return [y[1], bend, math.cos(y[0]), math.sin(y[0])]
 

@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-import numpy as np
-from numpy.typing import NDArray
+from deamat.core.arrays import FloatArray
 
 _GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 _NARROW = 1e-9  # of the grid's spacing, where a parabola's minimum is flat to rounding already
 
 
-def lowest(cost: Callable[[float], float], grid: NDArray[np.float64]) -> tuple[float, int]:
+def lowest(cost: Callable[[float], float], grid: FloatArray) -> tuple[float, int]:
     """Find the minimum next to the lowest point of a grid.
 
     Parameters

@@ -77,3 +77,10 @@ def degrees_of_freedom(n: int, p: int, error_scale: ErrorScale) -> int:
             {"points": n, "parameters": p},
         )
     return n - p
+
+
+def scaled_condition(columns: FloatArray) -> float:
+    """Return the condition number of a matrix whose columns are scaled to length one `[1]`."""
+    lengths = np.sqrt(np.square(columns).sum(axis=0))
+    singular = np.linalg.svd(columns / lengths, compute_uv=False)
+    return float(singular[0] / singular[-1]) if singular[-1] > 0 else float("inf")

@@ -9,6 +9,7 @@ import numpy as np
 
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
+from deamat.estimators.least_squares.checks import scaled_condition
 
 # Of the weighted Jacobian with its columns scaled to equal length: float arithmetic then still
 # leaves 6 digits in the parameters.
@@ -266,12 +267,11 @@ def polish(problem: Problem, b: FloatArray) -> Minimum:
 
 def _condition(b: FloatArray, r: FloatArray) -> float:
     """Scaled condition number of the weighted Jacobian at b, refused beyond the limit."""
-    lengths = np.sqrt(np.square(r).sum(axis=0))
+    lengths = np.square(r).sum(axis=0)
     if not np.all(lengths > 0):
         which = int(np.flatnonzero(~(lengths > 0))[0])
         raise FitRefused(f"the model does not depend on parameter {which} at {_told(b)}")
-    singular = np.linalg.svd(r / lengths, compute_uv=False)
-    condition = float(singular[0] / singular[-1]) if singular[-1] > 0 else float("inf")
+    condition = scaled_condition(r)
     if condition > CONDITION_LIMIT:
         raise FitRefused(
             f"the Jacobian is rank-deficient at {_told(b)}: condition number {condition:.1e}, at "

@@ -22,6 +22,7 @@ import numpy as np
 
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
+from deamat.estimators.least_squares.checks import scaled_condition
 from deamat.estimators.least_squares.double_double import DoubleDouble
 
 # Of the design with its columns scaled to equal length. Beyond it data that are right to 16 digits
@@ -99,9 +100,7 @@ def _column_scale(design: FloatArray) -> FloatArray:
 
 def _condition_number(r: FloatArray) -> float:
     """Condition of the scaled design, refused beyond `CONDITION_LIMIT`."""
-    lengths = np.sqrt(np.square(r).sum(axis=0))
-    singular = np.linalg.svd(r / lengths, compute_uv=False)
-    condition = float(singular[0] / singular[-1]) if singular[-1] > 0 else float("inf")
+    condition = scaled_condition(r)
     if condition > CONDITION_LIMIT:
         raise FitRefused(
             f"the columns of the design depend on each other: condition number {condition:.1e}, "

@@ -8,7 +8,6 @@ from functools import partial
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from deamat.core.errors import MissingProperty
 from deamat.core.properties import REFERENCE_AGE
@@ -32,7 +31,7 @@ from deamat.report.paper.laws import (
     rate_for,
     rates_of,
 )
-from deamat.report.style import COLOURS
+from deamat.report.style import COLOURS, decade_ticks
 
 Draw = Callable[[Axes], None]
 
@@ -220,9 +219,7 @@ def draw_pairs(
     axes.set_ylabel("composition")
     if logarithmic:
         axes.set_xscale("log")
-        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-        axes.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
-        axes.xaxis.set_minor_formatter(NullFormatter())
+        decade_ticks(axes.xaxis)
     else:
         axes.margins(x=0.25)
 
