@@ -65,7 +65,7 @@ def curvature_figure(out_dir: Path, name: str, design: Design) -> Pictures:
         if all(c is not None for c in chances):
             _draw_chance(axes, kilovolts[1:], [100.0 * (c or 0.0) for c in chances])
 
-    return _written(out_dir, name, _title(design), draw, bool(design.synthetic))
+    return _save(out_dir, name, _title(design), draw, bool(design.synthetic))
 
 
 def tornado_figure(out_dir: Path, name: str, design: Design) -> Pictures:
@@ -81,7 +81,7 @@ def tornado_figure(out_dir: Path, name: str, design: Design) -> Pictures:
         reach = max(abs(e - middle) for b in bars for e in (b.low, b.high) if math.isfinite(e))
         axes.set_xlim(middle - 1.6 * reach, middle + 1.6 * reach)
         for row, bar in enumerate(bars):
-            _tell(axes, row, bar, middle, reach)
+            _label_bar(axes, row, bar, middle, reach)
         axes.axvline(middle, color="black", lw=0.8)
         axes.set_yticks(range(len(bars)), [plain_name(bar.name) for bar in bars])
         axes.set(xlabel="curvature [1/m]", ylim=(len(bars) - 0.4, -0.6))
@@ -91,7 +91,7 @@ def tornado_figure(out_dir: Path, name: str, design: Design) -> Pictures:
             axes.barh(math.nan, math.nan, color=COLOURS[i], label=f"input {which}")
 
     height = _MARGINS_in + _BAR_in * len(design.tornado)
-    return _written(out_dir, name, _title(design), draw, bool(design.synthetic), height)
+    return _save(out_dir, name, _title(design), draw, bool(design.synthetic), height)
 
 
 def compositions_figure(
@@ -127,7 +127,7 @@ def compositions_figure(
         plain_numbers(axes.xaxis)
         axes.set_ylim(bottom=0)
 
-    return _written(out_dir, name, title, draw, any(c.synthetic for c in compositions))
+    return _save(out_dir, name, title, draw, any(c.synthetic for c in compositions))
 
 
 def pareto_figure(
@@ -162,7 +162,7 @@ def pareto_figure(
         if figure is not None:
             figure.colorbar(ScalarMappable(norm, "viridis"), ax=axes, label="blocked force [uN]")
 
-    return _written(out_dir, name, title, draw, synthetic)
+    return _save(out_dir, name, title, draw, synthetic)
 
 
 def plain_name(name: str) -> str:
@@ -181,7 +181,7 @@ def _draw_chance(axes: Axes, kilovolts: Sequence[float], percent: Sequence[float
     right.spines["right"].set_visible(True)
 
 
-def _tell(axes: Axes, row: int, bar: Bar, middle: float, reach: float) -> None:
+def _label_bar(axes: Axes, row: int, bar: Bar, middle: float, reach: float) -> None:
     u_per_m = bar.u if bar.u > _NOTHING_per_m else 0.0
     text = f"± {u_per_m:.2g}" if bar.declared else "no uncertainty declared"
     ends = [end for end in (bar.low, bar.high, middle) if math.isfinite(end)]
@@ -198,7 +198,7 @@ def _title(design: Design) -> str:
     return f"{r.de} ({film_um:.4g} um) on {r.passive} ({passive_um:.4g} um), {voltage}"
 
 
-def _written(
+def _save(
     out_dir: Path,
     name: str,
     title: str,
