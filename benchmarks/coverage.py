@@ -25,7 +25,7 @@ from benchmarks.timing import write_results
 from deamat.core.config import Config, load_config
 from deamat.core.records import Law, Measurement, PropertyRecord, Specimen, Summary
 from deamat.core.register import read_register
-from deamat.core.technique import Context, Technique
+from deamat.core.technique import AnyTechnique, Context
 from deamat.formats.detect import detect
 from deamat.formats.rawfile import RawFile
 from deamat.run.measure import in_order, needs_met
@@ -134,7 +134,7 @@ def _along(law: Law, seed: int) -> Iterator[Answer]:
 
 
 def _summaries(
-    technique: Technique,
+    technique: AnyTechnique,
     files: Mapping[str, bytes],
     materials: Collection[str] | None,
     records: Records,
@@ -159,7 +159,7 @@ def _summaries(
 
 
 def _measure(
-    technique: Technique, specimen: Specimen, files: Mapping[str, bytes], records: Records
+    technique: AnyTechnique, specimen: Specimen, files: Mapping[str, bytes], records: Records
 ) -> Measurement:
     config = _config()
     _, machine = config.instruments.machine(specimen.notes.get("instrument", ""))

@@ -52,7 +52,7 @@ from deamat.core.arrays import FloatArray
 from deamat.core.instruments import Machine
 from deamat.core.quantity import Quantity
 from deamat.core.records import Specimen
-from deamat.core.technique import Context, Technique
+from deamat.core.technique import AnyTechnique, Context
 from deamat.formats.format import Format
 from deamat.formats.rawfile import RawFile, whole_file
 
@@ -112,7 +112,7 @@ def ours_whole() -> Contender:
     # By name, so that the rivals can be timed where these floors do not import.
     detect: Callable[[RawFile], Format] = importlib.import_module("deamat.formats.detect").detect
     techniques = importlib.import_module("deamat.techniques").TECHNIQUES
-    technique: Technique = techniques["compression"]
+    technique: AnyTechnique = techniques["compression"]
     context = Context(technique.config(), Machine(), needs={})
     specimen = _specimen()
 

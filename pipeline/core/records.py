@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Annotated, ClassVar, Generic, Literal, Protocol, Self
 
 import numpy as np
+from typing_extensions import TypeVar  # with a default, which typing has from Python 3.13 on
 
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import OutOfRange
@@ -175,20 +176,37 @@ class Refusal:
     diagnostics: Mapping[str, Detail] = field(default_factory=dict)
 
 
+class Result(Protocol):
+    """What a technique makes of one specimen, in typed fields of its own."""
+
+    @property
+    def columns(self) -> Mapping[str, FloatArray]:
+        """Reduced curve by name with unit (`nominal_stress_Pa`), shape (n,) each; {} for none."""
+
+
+R_co = TypeVar("R_co", bound=Result, covariant=True, default=Result)
+
+
 @dataclass(frozen=True, slots=True)
-class Measurement:
-    """What one specimen gave: values, refusals, and the reduced curve behind them.
+class Measurement(Generic[R_co]):
+    """What one specimen gave: values, refusals, and the result behind them.
 
     Parameters
     ----------
-    curve : reduced columns by name with unit (`nominal_strain`, `nominal_stress_Pa`), shape (n,)
+    result : what `summarise` and `figure` of the same technique go by; None where nothing came of
+        the specimen, and kept beside a refusal where it shows why
     """
 
     specimen: Specimen
     values: tuple[MeasuredValue, ...]
     refusals: tuple[Refusal, ...] = ()
-    curve: Mapping[str, FloatArray] = field(default_factory=dict)
+    result: R_co | None = None
     source: Source | None = None
+
+    @property
+    def curve(self) -> Mapping[str, FloatArray]:
+        """Columns of the result, as `curves.h5` keeps them."""
+        return {} if self.result is None else self.result.columns
 
 
 @dataclass(frozen=True, slots=True)

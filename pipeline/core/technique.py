@@ -4,18 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any, Generic
 
 from pydantic import BaseModel
+from typing_extensions import TypeVar  # with a default, which typing has from Python 3.13 on
 
 from deamat.core.instruments import Machine
 from deamat.core.quantity import Quantity
-from deamat.core.records import Law, Measurement, Recording, Specimen, Summary
+from deamat.core.records import Law, Measurement, Recording, Result, Specimen, Summary
 from deamat.core.register import SPECIMENS, RegisterForm
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+C = TypeVar("C", bound=BaseModel, default=BaseModel)
+R = TypeVar("R", bound=Result, default=Result)
 
 
 @dataclass(frozen=True, slots=True)
-class Context:
+class Context(Generic[C]):
     """What a technique is handed beside the specimen and its recording.
 
     Parameters
@@ -28,7 +35,7 @@ class Context:
         has exactly one in its campaign
     """
 
-    config: Any
+    config: C
     machine: Machine
     needs: Mapping[str, Quantity]
     timezone: str = "UTC"
@@ -36,8 +43,10 @@ class Context:
 
 
 @dataclass(frozen=True, slots=True)
-class Technique:
+class Technique(Generic[C, R]):
     """One technique: a room under `techniques/` exports exactly one of these.
+
+    C is its config class, R what `reduce` makes of a specimen.
 
     Parameters
     ----------
@@ -56,10 +65,14 @@ class Technique:
     version: int
     yields: tuple[str, ...]
     needs: tuple[str, ...]
-    config: type[BaseModel]
+    config: type[C]
     required: tuple[str, ...]
     optional: tuple[str, ...]
-    reduce: Callable[[Specimen, Recording | None, Context], Measurement]
-    summarise: Callable[[Sequence[Measurement], Context], Summary]
-    figure: Callable[[Any, Sequence[Measurement], Summary], None] | None = None
+    reduce: Callable[[Specimen, Recording | None, Context[C]], Measurement[R]]
+    summarise: Callable[[Sequence[Measurement[R]], Context[C]], Summary]
+    figure: Callable[[Axes, Sequence[Measurement[R]], Summary], None] | None = None
     register: RegisterForm = SPECIMENS
+
+
+# Of whichever config and result: what the one list holds and the driver works through.
+AnyTechnique = Technique[Any, Any]

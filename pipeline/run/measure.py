@@ -13,7 +13,7 @@ from deamat.core.instruments import Machine
 from deamat.core.properties import REFERENCE_AGE
 from deamat.core.quantity import Quantity
 from deamat.core.records import Condition, Law, Measurement, PropertyRecord, Specimen, Summary
-from deamat.core.technique import Context, Technique
+from deamat.core.technique import AnyTechnique, Context
 from deamat.run.book import STALE, Book, digest, key_of
 from deamat.run.folders import Folders
 from deamat.run.stages import Stages
@@ -81,19 +81,19 @@ class Bench:
         """Keep the records or laws that a dry run knows to be as they will be."""
         return [entry for entry in entries if all(entry is not one for one in self.stale)]
 
-    def awaits(self, place: tuple[str, str], technique: Technique) -> bool:
+    def awaits(self, place: tuple[str, str], technique: AnyTechnique) -> bool:
         """Say whether a dry run knows nothing yet of something that a technique needs."""
         return any((*place, key) in self.unmade for key in technique.needs)
 
 
-def in_order(techniques: Mapping[str, Technique]) -> list[Technique]:
+def in_order(techniques: Mapping[str, AnyTechnique]) -> list[AnyTechnique]:
     """Order the techniques so that each comes after those whose properties it needs."""
     giver = {key: t.key for t in techniques.values() for key in t.yields}
     graph = {t.key: {giver[n] for n in t.needs} for t in techniques.values()}
     return [techniques[key] for key in TopologicalSorter(graph).static_order()]
 
 
-def measure(technique: Technique, bench: Bench) -> list[Measured]:
+def measure(technique: AnyTechnique, bench: Bench) -> list[Measured]:
     """Measure every specimen of one technique; only what is stale is read again."""
     tasks = list(_tasks(technique, bench))
     fresh = [bench.book.fresh("measurement", s, parts) for s, parts, _ in tasks]
@@ -113,7 +113,7 @@ def measure(technique: Technique, bench: Bench) -> list[Measured]:
     return measured
 
 
-def summarise(technique: Technique, measured: Sequence[Measured], bench: Bench) -> list[Group]:
+def summarise(technique: AnyTechnique, measured: Sequence[Measured], bench: Bench) -> list[Group]:
     """Summarise each group of specimens; only what is stale is computed again."""
     groups: dict[tuple[str, str, tuple[tuple[str, Condition], ...]], list[Measured]] = {}
     for one in measured:
@@ -160,13 +160,13 @@ def summarise(technique: Technique, measured: Sequence[Measured], bench: Bench) 
     return result
 
 
-def _laws(technique: Technique, laws: Sequence[Law]) -> dict[str, Law]:
+def _laws(technique: AnyTechnique, laws: Sequence[Law]) -> dict[str, Law]:
     """Find the laws that a technique needs; of two of one property neither is taken."""
     found = {key: [law for law in laws if law.key == key] for key in technique.needs}
     return {key: mine[0] for key, mine in found.items() if len(mine) == 1}
 
 
-def _tasks(technique: Technique, bench: Bench) -> Iterator[tuple[str, dict[str, str], Task]]:
+def _tasks(technique: AnyTechnique, bench: Bench) -> Iterator[tuple[str, dict[str, str], Task]]:
     """Every specimen of a technique with the components its measurement depends on."""
     config = bench.config.methods[technique.key]
     for survey in bench.surveys:
@@ -204,7 +204,7 @@ def _tasks(technique: Technique, bench: Bench) -> Iterator[tuple[str, dict[str, 
 
 
 def needs_met(
-    technique: Technique, specimen: Specimen, records: Sequence[PropertyRecord]
+    technique: AnyTechnique, specimen: Specimen, records: Sequence[PropertyRecord]
 ) -> dict[str, Quantity]:
     """Find what a technique needs among the records of its material and campaign."""
     needs = {key: _needed(key, specimen, records) for key in technique.needs}
@@ -221,7 +221,7 @@ def _needed(key: str, specimen: Specimen, records: Sequence[PropertyRecord]) -> 
     return same[0].quantity if len(same) == 1 else None
 
 
-def _run(technique: Technique, tasks: Sequence[Task], bench: Bench) -> Iterator[Reduced]:
+def _run(technique: AnyTechnique, tasks: Sequence[Task], bench: Bench) -> Iterator[Reduced]:
     """Work through the tasks, in this process where they are few."""
     bench.progress(technique.key, 0, len(tasks))
     results = bench.workers.map(reduce_one, tasks, FILES_PER_TASK)

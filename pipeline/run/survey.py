@@ -16,7 +16,7 @@ from deamat.core.ledger import FileEntry, Role
 from deamat.core.manifest import Difference, compare, parse_manifest
 from deamat.core.records import Specimen
 from deamat.core.register import REGISTER_FILES, read_register
-from deamat.core.technique import Technique
+from deamat.core.technique import AnyTechnique
 from deamat.formats.documentation import stated_units
 
 _DOCUMENTS = (".md", ".pdf", ".rst")
@@ -43,7 +43,7 @@ def survey(
     folder: Path,
     sizes: Mapping[str, int],
     hashes: Mapping[str, str],
-    techniques: Mapping[str, Technique],
+    techniques: Mapping[str, AnyTechnique],
     config: Config,
 ) -> Survey:
     """Account for every file of one campaign folder.
@@ -89,7 +89,11 @@ def _text(path: str) -> bool:
 
 
 def _entry(
-    path: str, size: int, sha256: str, difference: Difference, techniques: Mapping[str, Technique]
+    path: str,
+    size: int,
+    sha256: str,
+    difference: Difference,
+    techniques: Mapping[str, AnyTechnique],
 ) -> FileEntry:
     name = path.partition("/")[2]
     role = _role(path, techniques)
@@ -101,7 +105,7 @@ def _entry(
     return FileEntry(path, sha256, size, role, "used")
 
 
-def _role(path: str, techniques: Mapping[str, Technique]) -> Role:
+def _role(path: str, techniques: Mapping[str, AnyTechnique]) -> Role:
     parts = path.split("/")
     if len(parts) == 2:
         if parts[1] == CAMPAIGN_FILE:
@@ -149,7 +153,7 @@ def _register(
     path: str,
     folder: Path,
     result: Survey,
-    techniques: Mapping[str, Technique],
+    techniques: Mapping[str, AnyTechnique],
     config: Config,
 ) -> None:
     name = path.split("/")[1]
@@ -241,7 +245,7 @@ def _files_named(data: bytes, path: str) -> list[str]:
     return [f"{folder}/{row[at].strip()}" for row in rows[1:] if len(row) > at and row[at].strip()]
 
 
-def _unnamed(result: Survey, folder: Path, techniques: Mapping[str, Technique]) -> None:
+def _unnamed(result: Survey, folder: Path, techniques: Mapping[str, AnyTechnique]) -> None:
     """A data file that no register names is rejected: nobody can say what it belongs to."""
     for path, entry in result.entries.items():
         if entry.role != "unnamed" or entry.status == "excluded":

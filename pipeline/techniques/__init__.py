@@ -1,6 +1,6 @@
 """The rooms: one module per technique, and the one list of them."""
 
-from deamat.core.technique import Technique
+from deamat.core.technique import AnyTechnique
 from deamat.techniques import (
     breakdown,
     compression,
@@ -11,7 +11,7 @@ from deamat.techniques import (
     viscosity,
 )
 
-TECHNIQUES: dict[str, Technique] = {
+TECHNIQUES: dict[str, AnyTechnique] = {
     "breakdown": breakdown.TECHNIQUE,
     "compression": compression.TECHNIQUE,
     "handling": handling.TECHNIQUE,

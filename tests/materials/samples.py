@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from hypothesis import strategies as st
 
+from deamat.core.arrays import FloatArray
 from deamat.core.ledger import FileEntry, Provenance
 from deamat.core.properties import CONDITIONS, PROPERTIES
 from deamat.core.quantity import Contribution, Quantity
@@ -170,6 +172,13 @@ def card(**changes: Any) -> MaterialCard:
     return MaterialCard(**{**fields, **changes})
 
 
+@dataclass(frozen=True)
+class Columns:
+    """A result that is its curve and nothing more."""
+
+    columns: Mapping[str, FloatArray]
+
+
 def measurement(
     specimen: str,
     curve: Mapping[str, list[float]],
@@ -182,7 +191,9 @@ def measurement(
         *(specimen, material, campaign, technique, None, None, {}, {}, {}),
         *(f"{campaign}/{technique}/specimens.csv", line),
     )
-    return Measurement(who, (), curve={name: np.array(values) for name, values in curve.items()})
+    return Measurement(
+        who, (), result=Columns({name: np.array(values) for name, values in curve.items()})
+    )
 
 
 # --- arbitrary content, for properties that must hold for every card

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from deamat.core.records import Measurement
 from deamat.materials.curves import CurvesError, read_curves, unit_of_column, write_curves
 from deamat.materials.database import MissingMaterial, open_database, write_database
-from tests.materials.samples import PROVENANCE, card, measurement
+from tests.materials.samples import PROVENANCE, Columns, card, measurement
 
 A1 = measurement("A1", {"nominal_strain": [0.0, 0.1, 0.2], "nominal_stress_Pa": [0.0, 10.0, 20.5]})
 A2 = measurement("A2", {"nominal_strain": [0.0, 0.3], "nominal_stress_Pa": [1.0, 30.0]}, line=3)
@@ -88,7 +88,8 @@ def test_a_file_without_any_curve_can_be_read(tmp_path: Path) -> None:
 def test_the_same_curves_give_the_same_bytes_in_any_order(path: Path, tmp_path: Path) -> None:
     again = tmp_path / "again.h5"
     turned = [
-        Measurement(m.specimen, (), curve=dict(reversed(list(m.curve.items())))) for m in ALL[::-1]
+        Measurement(m.specimen, (), result=Columns(dict(reversed(list(m.curve.items())))))
+        for m in ALL[::-1]
     ]
     write_curves(again, turned, synthetic_campaigns=["twin-1"])
     assert again.read_bytes() == path.read_bytes()

@@ -12,7 +12,7 @@ from deamat.core.arrays import FloatArray
 from deamat.core.instruments import Machine
 from deamat.core.quantity import Quantity
 from deamat.core.records import Condition, Measurement, Recording, Source, Specimen
-from deamat.core.technique import Context, Technique
+from deamat.core.technique import C, Context, R, Technique
 
 EXACT = Machine(u_force_calibration=0.0, u_displacement_calibration=0.0)
 
@@ -46,16 +46,16 @@ def specimen(
     )
 
 
-def context(technique: Technique, machine: Machine = EXACT, **config: object) -> Context:
-    return Context(technique.config(**config), machine, {})
+def context(technique: Technique[C, R], machine: Machine = EXACT, **config: object) -> Context[C]:
+    return Context(technique.config.model_validate(config), machine, {})
 
 
 def reduce(
-    technique: Technique,
+    technique: Technique[C, R],
     numbers: Mapping[str, Quantity],
     columns: Mapping[str, FloatArray],
     machine: Machine = EXACT,
-) -> Measurement:
+) -> Measurement[R]:
     return technique.reduce(
         specimen(technique.key, numbers), recording(**columns), context(technique, machine)
     )

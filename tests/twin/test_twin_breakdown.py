@@ -26,6 +26,7 @@ from deamat.core.technique import Context
 from deamat.formats.detect import detect
 from deamat.formats.rawfile import RawFile
 from deamat.techniques.breakdown import TECHNIQUE
+from deamat.techniques.breakdown.result import FilmTest
 from deamat.twin.breakdown import (
     MATERIALS,
     SPECIMENS,
@@ -72,20 +73,20 @@ def rows(files: Mapping[str, bytes]) -> list[Specimen]:
     return list(register.specimens)
 
 
-def measure(specimen: Specimen, files: Mapping[str, bytes]) -> Measurement:
+def measure(specimen: Specimen, files: Mapping[str, bytes]) -> Measurement[FilmTest]:
     if specimen.file is None:
         return TECHNIQUE.reduce(specimen, None, SETTINGS)
     file = RawFile(specimen.file, files[specimen.file.removeprefix("c/")])
     return TECHNIQUE.reduce(specimen, detect(file).read(file), SETTINGS)
 
 
-def summarise(measured: Sequence[Measurement]) -> list[PropertyRecord]:
+def summarise(measured: Sequence[Measurement[FilmTest]]) -> list[PropertyRecord]:
     summary = TECHNIQUE.summarise(measured, SETTINGS)
     assert summary.refusals == ()
     return list(summary.records)
 
 
-def one(path: str, *quirks: Quirk) -> Measurement:
+def one(path: str, *quirks: Quirk) -> Measurement[FilmTest]:
     """Measure the specimen of one file after quirks."""
     files = reduce(lambda made, quirk: quirk(made), quirks, contents())
     (row,) = [s for s in rows(files) if s.file == f"c/{path}"]
@@ -111,7 +112,7 @@ def test_every_strength_of_table_4_lies_in_its_interval(material: str) -> None:
         assert all((o.path is not None) == keeps_log(material) for o in record.origins)
 
 
-def in_memory(seed: int, material: str) -> list[Measurement]:
+def in_memory(seed: int, material: str) -> list[Measurement[FilmTest]]:
     source = Source("x", "0" * 64, 1, 2, "utf-8", "none")
     measured = []
     for number in range(1, SPECIMENS + 1):

@@ -21,6 +21,7 @@ from deamat.formats.detect import detect
 from deamat.formats.rawfile import RawFile
 from deamat.techniques import TECHNIQUES, viscosity
 from deamat.techniques.viscosity.config import ViscosityConfig
+from deamat.techniques.viscosity.result import Run
 from deamat.twin.campaign import SEED
 from deamat.twin.truth import true_viscosities
 from deamat.twin.viscosity import (
@@ -60,7 +61,7 @@ def register(files: Mapping[str, bytes] = FILES) -> dict[str, Specimen]:
     return {str(s.file): s for s in found.specimens}
 
 
-def context_of(row: Specimen) -> Context:
+def context_of(row: Specimen) -> Context[ViscosityConfig]:
     """The viscometer that the configuration declares under the name in the register."""
     return replace(CONTEXT, machine=INSTRUMENTS.machine(row.notes["instrument"])[1])
 
@@ -70,13 +71,13 @@ def read(path: str, files: Mapping[str, bytes] = FILES) -> Recording:
     return detect(file).read(file)
 
 
-def spoilt(path: str, quirk: Quirk) -> Measurement:
+def spoilt(path: str, quirk: Quirk) -> Measurement[Run]:
     files = quirk(FILES)
     return viscosity.TECHNIQUE.reduce(register(files)[path], read(path, files), CONTEXT)
 
 
 @pytest.fixture(scope="module")
-def measurements() -> dict[str, Measurement]:
+def measurements() -> dict[str, Measurement[Run]]:
     """Every run of the committed seed, reduced from its file."""
     return {
         path: viscosity.TECHNIQUE.reduce(row, read(path), context_of(row))
@@ -85,9 +86,9 @@ def measurements() -> dict[str, Measurement]:
 
 
 @pytest.fixture(scope="module")
-def summaries(measurements: dict[str, Measurement]) -> dict[str, Summary]:
+def summaries(measurements: dict[str, Measurement[Run]]) -> dict[str, Summary]:
     """What the room says of every material."""
-    runs: dict[str, list[Measurement]] = {}
+    runs: dict[str, list[Measurement[Run]]] = {}
     for measured in measurements.values():
         runs.setdefault(measured.specimen.material, []).append(measured)
     return {material: viscosity.TECHNIQUE.summarise(of, CONTEXT) for material, of in runs.items()}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,7 +13,11 @@ from deamat.core.records import Measurement, Summary
 from deamat.core.units import from_si
 from deamat.estimators.weibull.fit import fit, quantile
 from deamat.estimators.weibull.plot import confidence_band, plotting_positions, weibull_axis
+from deamat.techniques.breakdown.result import FilmTest
 from deamat.techniques.breakdown.summarise import Sample, samples
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _PERCENT = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 80.0, 95.0, 99.0)
 _FOOT = float(weibull_axis(0.01))
@@ -21,7 +25,7 @@ _TOP = float(weibull_axis(0.995))
 _STEPS = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0)  # of the ticks in a decade
 
 
-def figure(axes: Any, measurements: Sequence[Measurement], _summary: Summary) -> None:
+def figure(axes: Axes, measurements: Sequence[Measurement[FilmTest]], _: Summary) -> None:
     """Draw ln(-ln(1 - F)) over the field: specimens, fitted line, 95 % band of its quantiles.
 
     Specimens that did not break have no place of their own on the upright axis: they are marked at
@@ -29,7 +33,6 @@ def figure(axes: Any, measurements: Sequence[Measurement], _summary: Summary) ->
 
     Parameters
     ----------
-    axes : matplotlib axes
     measurements : of one material; each electrode area and rate of rise has its own line
     """
     ends: list[float] = []
@@ -56,7 +59,7 @@ def figure(axes: Any, measurements: Sequence[Measurement], _summary: Summary) ->
     axes.set_ylabel("broken [%], as ln(-ln(1 - F))")
 
 
-def _fitted(axes: Any, group: Sample, named: str) -> None:
+def _fitted(axes: Axes, group: Sample, named: str) -> None:
     x, censored = from_si(1.0, "V/um") * group.field_V_per_m, group.censored
     best = fit(x, censored)
     points = plotting_positions(x, censored)
@@ -77,7 +80,7 @@ def _fitted(axes: Any, group: Sample, named: str) -> None:
     )  # fmt: skip
 
 
-def _censored(axes: Any, group: Sample, named: str) -> None:
+def _censored(axes: Axes, group: Sample, named: str) -> None:
     unbroken: FloatArray = from_si(1.0, "V/um") * group.field_V_per_m[group.censored]
     if unbroken.size:
         axes.plot(

@@ -23,6 +23,7 @@ from deamat.core.records import (
 from deamat.core.technique import Context
 from deamat.techniques.breakdown.config import FIELD, BreakdownConfig
 from deamat.techniques.breakdown.ramp import Breakdown, Rise, audit_rise, find_breakdown
+from deamat.techniques.breakdown.result import FilmTest, Ramp
 from deamat.techniques.shared.outcome import line_span, nothing_measured, relative_lines
 
 _CONDITIONS = ("electrode_area_m2", "rate_V_per_s")
@@ -54,11 +55,13 @@ class _Seen:
     budget: tuple[Contribution, ...] = ()
     flags: tuple[Flag, ...] = ()
     diagnostics: Mapping[str, Detail] = field(default_factory=dict)
-    curve: Mapping[str, FloatArray] = field(default_factory=dict)
+    ramp: Ramp | None = None
     lines: tuple[int, int] | None = None
 
 
-def reduce(specimen: Specimen, recording: Recording | None, context: Context) -> Measurement:
+def reduce(
+    specimen: Specimen, recording: Recording | None, context: Context[BreakdownConfig]
+) -> Measurement[FilmTest]:
     r"""Reduce one specimen to the nominal field at its breakdown, $E = V/t$.
 
     V is the greatest voltage before the first collapse; t the undeformed thickness as the register
@@ -70,17 +73,18 @@ def reduce(specimen: Specimen, recording: Recording | None, context: Context) ->
     specimen : with `thickness_m`; without a file also with `breakdown_voltage_V`, or with
         `breakdown_field_V_per_m` alone, and `censored` (yes, no) among its notes
     recording : `time_s`, `voltage_V` and, if there was one, `current_A`
-    context : with a `BreakdownConfig`
 
     Source: ASTM D149 in style (it is written for AC); for DC ASTM D3755 and IEC 60243-2.
     """
     try:
         seen = _seen(specimen, recording, context.config)
-        value = _field(specimen, seen, context)
+        thickness = None if seen.is_field else _thickness(specimen)
+        value = _field(specimen, seen, thickness, context)
     except FitRefused as error:
         return nothing_measured(specimen, (FIELD,), error, recording)
     source = None if recording is None else recording.source
-    return Measurement(specimen, (value,), (), seen.curve, source)
+    film = FilmTest(seen.censored, None if thickness is None else thickness.value, seen.ramp)
+    return Measurement(specimen, (value,), (), film, source)
 
 
 def _seen(specimen: Specimen, recording: Recording | None, config: BreakdownConfig) -> _Seen:
@@ -153,9 +157,6 @@ def _of_ramp(specimen: Specimen, recording: Recording, config: BreakdownConfig) 
     time_s, voltage_V, current_A = _signals(recording, config)
     found = find_breakdown(voltage_V, current_A, config.criteria())
     rise = audit_rise(time_s, voltage_V, found.peak, config.dip)
-    curve = {"time_s": time_s, "voltage_V": voltage_V}
-    if current_A is not None:
-        curve["current_A"] = current_A
     last = min(found.peak + 1, time_s.size - 1)
     spike = "" if found.spike_A is None else " with a current spike"
     return _Seen(
@@ -167,7 +168,7 @@ def _of_ramp(specimen: Specimen, recording: Recording, config: BreakdownConfig) 
         budget=_sampling(found),
         flags=_flags_of_ramp(specimen, found, rise, current_A is not None, config),
         diagnostics=_diagnostics(found, rise),
-        curve=curve,
+        ramp=Ramp(time_s, voltage_V, current_A, found.end, rise.duration_s, rise.rate_V_per_s),
         lines=line_span(recording.source, time_s.size, 0, last),
     )
 
@@ -292,13 +293,17 @@ def _disagreement(
     return tuple(Flag("register-disagrees", f"{text}; the ramp was used") for text in flags)
 
 
-def _field(specimen: Specimen, seen: _Seen, context: Context) -> MeasuredValue:
+def _field(
+    specimen: Specimen,
+    seen: _Seen,
+    thickness: Quantity | None,
+    context: Context[BreakdownConfig],
+) -> MeasuredValue:
     """Divide by the thickness and put the budget together."""
     flags, details = seen.flags, dict(seen.diagnostics)
     budget: tuple[Contribution, ...] = seen.budget
     value, method = seen.value, seen.method
-    if not seen.is_field:
-        thickness = _thickness(specimen)
+    if thickness is not None:
         value /= thickness.value
         details = {"voltage_V": seen.value, "thickness_m": thickness.value, **details}
         budget += (

@@ -18,7 +18,6 @@ from deamat.core.records import (
     Condition,
     Detail,
     Flag,
-    MeasuredValue,
     Measurement,
     PropertyRecord,
     Refusal,
@@ -30,6 +29,7 @@ from deamat.estimators.weibull.goodness import GoodnessOfFit, LowOutlier
 from deamat.estimators.weibull.goodness import goodness_of_fit as test_of_form
 from deamat.estimators.weibull.goodness import low_outlier as test_of_lowest
 from deamat.estimators.weibull.intervals import Inference, Interval, infer
+from deamat.estimators.weibull.sample import MIN_DISTINCT, MIN_SPREAD
 from deamat.estimators.weibull.shape import unbiased_shape
 from deamat.techniques.breakdown.config import (
     B1,
@@ -42,6 +42,7 @@ from deamat.techniques.breakdown.config import (
     YIELDS,
     BreakdownConfig,
 )
+from deamat.techniques.breakdown.result import FilmTest
 from deamat.techniques.shared.mean import Pair, merged_flags, origin_of
 
 _ONE_SIGMA = math.erf(1.0 / math.sqrt(2.0))  # level of the interval whose half width is u
@@ -50,7 +51,7 @@ _NORMAL_95 = 1.959963984540054
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """The specimens of one material under the same conditions, in register order.
+    """The films of one material under the same conditions, in register order.
 
     Parameters
     ----------
@@ -59,30 +60,35 @@ class Sample:
     """
 
     pairs: tuple[Pair, ...]
+    films: tuple[FilmTest, ...]
     conditions: dict[str, Condition]
     field_V_per_m: FloatArray
     censored: NDArray[np.bool_]
 
 
-def samples(measurements: Sequence[Measurement]) -> Iterator[Sample]:
+def samples(measurements: Sequence[Measurement[FilmTest]]) -> Iterator[Sample]:
     """Part the specimens by electrode area and rate of rise; other conditions are one group's."""
     ordered = sorted(measurements, key=lambda m: (m.specimen.line, m.specimen.id))
-    groups: dict[tuple[tuple[str, Condition], ...], list[Pair]] = {}
+    groups: dict[tuple[tuple[str, Condition], ...], list[tuple[Pair, FilmTest]]] = {}
     for m in ordered:
         for v in m.values:
-            if v.key == FIELD:
+            if v.key == FIELD and m.result is not None:
                 conditions = {**m.specimen.conditions, **v.conditions}
-                groups.setdefault(tuple(sorted(conditions.items())), []).append((m, v))
-    for conditions_of_group, pairs in groups.items():
+                group = groups.setdefault(tuple(sorted(conditions.items())), [])
+                group.append(((m, v), m.result))
+    for conditions_of_group, members in groups.items():
         yield Sample(
-            tuple(pairs),
+            tuple(pair for pair, _ in members),
+            tuple(film for _, film in members),
             dict(conditions_of_group),
-            np.array([v.quantity.value for _, v in pairs]),
-            np.array([v.diagnostics["censored"] == 1 for _, v in pairs]),
+            np.array([v.quantity.value for (_, v), _ in members]),
+            np.array([film.censored for _, film in members]),
         )
 
 
-def summarise(measurements: Sequence[Measurement], context: Context) -> Summary:
+def summarise(
+    measurements: Sequence[Measurement[FilmTest]], context: Context[BreakdownConfig]
+) -> Summary:
     r"""Fit a two-parameter Weibull distribution, $F = 1 - \exp(-(E/E_b)^\beta)$, by its likelihood.
 
     Specimens that did not break are right-censored. The intervals are Lawless' exact conditional
@@ -94,7 +100,6 @@ def summarise(measurements: Sequence[Measurement], context: Context) -> Summary:
     Parameters
     ----------
     measurements : of one material in one campaign; their order does not matter
-    context : with a `BreakdownConfig`
 
     Source: IEC 62539; Lawless, Statistical Models and Methods for Lifetime Data, chapter 5.
     """
@@ -210,8 +215,8 @@ def _diagnostics(
     config: BreakdownConfig,
 ) -> dict[str, Detail]:
     fit = inference.fit
-    values = [v for _, v in sample.pairs]
-    ends = Counter(str(v.diagnostics["end"]) for v in values if "end" in v.diagnostics)
+    ramps = [film.ramp for film in sample.films if film.ramp is not None]
+    ends = Counter(ramp.end for ramp in ramps)
     details: dict[str, Detail] = {
         "failures": fit.failures,
         "censored": fit.n - fit.failures,
@@ -227,8 +232,11 @@ def _diagnostics(
         "area_ratio_limit": config.area_ratio_limit,
         **{f"ended by {how}": count for how, count in sorted(ends.items())},
     }
-    for name in ("thickness_m", "time_to_end_s", "rate_V_per_s"):
-        found = [float(v.diagnostics[name]) for v in values if name in v.diagnostics]
+    for name, found in (
+        ("thickness_m", [f.thickness_m for f in sample.films if f.thickness_m is not None]),
+        ("time_to_end_s", [ramp.duration_s for ramp in ramps]),
+        ("rate_V_per_s", [ramp.rate_V_per_s for ramp in ramps]),
+    ):
         if found:
             details |= {
                 f"{name}_mean": math.fsum(found) / len(found),
@@ -304,7 +312,7 @@ def _implausible(key: str, value: float) -> tuple[Flag, ...]:
 
 def _refused(sample: Sample, error: FitRefused) -> list[Refusal]:
     specimen = sample.pairs[0][0].specimen
-    reason = error.reason + _mend(sample.pairs, error)
+    reason = error.reason + _hint(sample)
     return [
         Refusal(
             key, reason, specimen.material, specimen.campaign, None, sample.conditions,
@@ -314,14 +322,16 @@ def _refused(sample: Sample, error: FitRefused) -> list[Refusal]:
     ]  # fmt: skip
 
 
-def _mend(pairs: Sequence[tuple[Measurement, MeasuredValue]], error: FitRefused) -> str:
-    """Say what would mend a refusal whose reason does not say it."""
-    found = error.diagnostics
-    if "first" in found:
-        who = pairs[int(found["first"]) - 1][0].specimen.id
+def _hint(sample: Sample) -> str:
+    """Say what would help where the estimator's reason does not say it."""
+    wrong = ~(sample.field_V_per_m > 0.0)
+    failures = sample.field_V_per_m[~sample.censored]
+    if wrong.any():
+        who = sample.pairs[int(np.argmax(wrong))][0].specimen.id
         return f"; correct the register row of {who}, or leave it out for a stated reason"
-    if "distinct" in found and found["distinct"] == 0:
+    if failures.size == 0:
         return ": test thinner films, or with an amplifier that goes further"
-    if "relative_spread" in found:
+    distinct = np.unique(failures)
+    if distinct.size >= MIN_DISTINCT and np.ptp(distinct) < MIN_SPREAD * distinct[-1]:
         return ": read the instrument to more digits"
     return ""

@@ -32,6 +32,8 @@ from deamat.estimators.curves.stress_strain import (
 from deamat.techniques.compression.config import COMPENSATED, MODULUS, YIELDS, CompressionConfig
 from deamat.techniques.shared.geometry import circular_section, register_length
 from deamat.techniques.shared.modulus import (
+    LoadingCurve,
+    WindowLine,
     conditions_of_test,
     flags_of_loading,
     modulus,
@@ -42,7 +44,9 @@ from deamat.techniques.shared.outcome import nothing_measured, recorded, refusal
 from deamat.techniques.shared.stress_strain import StressStrain, disagreement, stress_strain
 
 
-def reduce(specimen: Specimen, recording: Recording | None, context: Context) -> Measurement:
+def reduce(
+    specimen: Specimen, recording: Recording | None, context: Context[CompressionConfig]
+) -> Measurement[LoadingCurve]:
     r"""Reduce one cylinder to its modulus, $Y_c = d\sigma/d\varepsilon$ over the window.
 
     Ordinary least squares with an intercept, on the first loading only. The slope against strain
@@ -52,11 +56,10 @@ def reduce(specimen: Specimen, recording: Recording | None, context: Context) ->
     ----------
     specimen : with `diameter_m` and `height_m`; `speed_m_per_s` gives the condition `rate_per_s`
     recording : see `shared.stress_strain.stress_strain`
-    context : with a `CompressionConfig`
 
     Source: ASTM D575 for the test, ASTM D638 annex A1 for the toe.
     """
-    config: CompressionConfig = context.config
+    config = context.config
     try:
         file = recorded(recording)
         height = register_length(specimen.numbers, "height_m")
@@ -75,8 +78,9 @@ def reduce(specimen: Specimen, recording: Recording | None, context: Context) ->
     )
     values: list[MeasuredValue] = []
     refusals: list[Refusal] = []
+    line = None
     try:
-        plain, bins = _plain(loading, config)
+        plain, bins, line = _plain(loading, config)
         values.append(plain)
     except FitRefused as error:
         refusals += [refusal(specimen, k, error, loading.conditions) for k in YIELDS]
@@ -89,7 +93,7 @@ def reduce(specimen: Specimen, recording: Recording | None, context: Context) ->
         specimen,
         tuple(values),
         tuple(refusals),
-        {"nominal_strain": loading.strain, "nominal_stress_Pa": loading.stress_Pa},
+        LoadingCurve(loading.strain, loading.stress_Pa, line),
         file.source,
     )
 
@@ -106,7 +110,7 @@ class _Loading:
     flags: tuple[Flag, ...]
 
 
-def _plain(loading: _Loading, config: CompressionConfig) -> tuple[MeasuredValue, Bins]:
+def _plain(loading: _Loading, config: CompressionConfig) -> tuple[MeasuredValue, Bins, WindowLine]:
     low, high = config.window
     inside = window(loading.strain, low, high, config.min_samples, config.unloading_tolerance)
     x, y = loading.strain[inside], loading.stress_Pa[inside]
@@ -125,7 +129,7 @@ def _plain(loading: _Loading, config: CompressionConfig) -> tuple[MeasuredValue,
         + _toe_flags(line, bins, config),
         diagnostics=_bin_diagnostics(bins, config.toe_bin),
     )
-    return value, bins
+    return value, bins, WindowLine(config.window, line.slope, line.intercept)
 
 
 def _compensated(loading: _Loading, bins: Bins, config: CompressionConfig) -> MeasuredValue:

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 from deamat.core.records import Measurement, Summary
 from deamat.core.units import from_si
 from deamat.techniques.handling.config import KEY
-from deamat.techniques.handling.runs import line_of, runs_of
+from deamat.techniques.handling.runs import Line, runs_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
-def figure(axes: Any, measurements: Sequence[Measurement], summary: Summary) -> None:
+def figure(axes: Axes, measurements: Sequence[Measurement[Line]], summary: Summary) -> None:
     """Draw every printed line at its time, run by run, and where the first defect began."""
-    runs = runs_of(line_of(m) for m in measurements if not m.refusals)
+    runs = runs_of(m.result for m in measurements if m.result is not None)
     for mark, said, chosen in (
         ("o", "clean", lambda line: not line.defective),
         ("x", "defective", lambda line: line.defective),

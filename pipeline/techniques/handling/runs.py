@@ -11,7 +11,7 @@ from operator import attrgetter
 import numpy as np
 
 from deamat.core.arrays import FloatArray
-from deamat.core.records import Measurement, Specimen
+from deamat.core.records import Specimen
 
 RUN_COLUMNS = ("batch", "mixed_at")  # what tells two runs of one material apart
 
@@ -22,37 +22,26 @@ class Line:
 
     Parameters
     ----------
+    run : the batch that it was printed from, empty where the register tells none
     time_s : since mixing
+    defect, limit : as the register calls them; `limit` is None where it tells none
     defective : it was seen to be
     limited : a limit of the equipment was met while it was printed
     """
 
     specimen: Specimen
+    run: str
     time_s: float
+    defect: str
+    limit: str | None
     defective: bool
     limited: bool
 
     @property
-    def run(self) -> str:
-        """The batch that it was printed from, empty where the register tells none."""
-        notes = self.specimen.notes
-        return next((notes[column] for column in RUN_COLUMNS if column in notes), "")
-
     def columns(self) -> dict[str, FloatArray]:
-        """Columns of a measurement, shape (1,) each."""
+        """Time and what was seen, shape (1,) each."""
         numbers = {"time_s": self.time_s, "defective": self.defective, "limited": self.limited}
         return {name: np.array([value], np.float64) for name, value in numbers.items()}
-
-
-def line_of(measurement: Measurement) -> Line:
-    """Take back the line that a measurement was made of."""
-    specimen, columns = measurement.specimen, measurement.curve
-    return Line(
-        specimen,
-        float(columns["time_s"][0]),
-        bool(columns["defective"][0]),
-        bool(columns["limited"][0]),
-    )
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,11 +21,13 @@ from deamat.core.records import (
 from deamat.core.technique import Context
 from deamat.core.units import from_si
 from deamat.techniques.handling.config import KEY, VERSION, HandlingConfig
-from deamat.techniques.handling.runs import Line, Run, line_of, runs_of
+from deamat.techniques.handling.runs import Line, Run, runs_of
 from deamat.techniques.handling.viscosity_then import viscosity_then
 
 
-def summarise(measurements: Sequence[Measurement], context: Context) -> Summary:
+def summarise(
+    measurements: Sequence[Measurement[Line]], context: Context[HandlingConfig]
+) -> Summary:
     r"""Say up to when every line of every run was clean, and by when the first one was not.
 
     With a last clean line at $L_i$ and a first defective one at $U_i$ in run i ($U_i = \infty$
@@ -43,7 +45,7 @@ def summarise(measurements: Sequence[Measurement], context: Context) -> Summary:
             "and any of them may be the first defective one"
         )
         return Summary((), refusals=(*refusals, _refused(first, reason)))
-    runs = runs_of(map(line_of, measurements))
+    runs = runs_of(m.result for m in measurements if m.result is not None)
     for run in runs:
         if math.isinf(run.clean_until_s):
             reason = (
@@ -52,8 +54,7 @@ def summarise(measurements: Sequence[Measurement], context: Context) -> Summary:
             )
             return Summary((), refusals=(_refused(first, reason),))
     record = _record(runs, context.config)
-    config: HandlingConfig = context.config
-    then = viscosity_then(record, context.laws, config.max_temperature_difference_K)
+    then = viscosity_then(record, context.laws, context.config.max_temperature_difference_K)
     if isinstance(then, Refusal):
         return Summary((record,), refusals=(then,))
     return Summary((record, then))
@@ -103,7 +104,10 @@ def _origin(line: Line) -> Origin:
         last_line=None,
         reader=None,
         technique=f"handling@{VERSION}",
-        diagnostics={k: row.notes[k] for k in ("defect", "limit") if k in row.notes},
+        diagnostics={
+            "defect": line.defect,
+            **({} if line.limit is None else {"limit": line.limit}),
+        },
     )
 
 
@@ -112,8 +116,10 @@ def _flags_of_runs(runs: Sequence[Run], config: HandlingConfig) -> Iterator[Flag
         if run.ended_by is None:
             yield Flag("right-censored", f"no defect was seen{_in(run)}; the printing just stopped")
         elif math.isinf(run.defective_from_s):
-            limit = run.ended_by.specimen.notes["limit"]
-            yield Flag("right-censored", f"no defect was seen{_in(run)} before a limit: {limit}")
+            yield Flag(
+                "right-censored",
+                f"no defect was seen{_in(run)} before a limit: {run.ended_by.limit}",
+            )
         again = run.clean_again
         if again and run.ended_by is not None:
             yield Flag(
@@ -161,9 +167,9 @@ def _diagnostics(runs: Sequence[Run]) -> dict[str, Detail]:
         if run.ended_by is None:
             details[f"ended_by{name}"] = "the last line"
         elif math.isinf(run.defective_from_s):
-            details[f"ended_by{name}"] = f"equipment limit: {run.ended_by.specimen.notes['limit']}"
+            details[f"ended_by{name}"] = f"equipment limit: {run.ended_by.limit}"
         else:
-            details[f"ended_by{name}"] = f"defect: {run.ended_by.specimen.notes['defect']}"
+            details[f"ended_by{name}"] = f"defect: {run.ended_by.defect}"
             details[f"defective_from_s{name}"] = run.defective_from_s
     return details
 

@@ -12,8 +12,8 @@ VERSION = 1
 IDEAL_BERKOVICH = (24.5,)  # 3 sqrt(3) tan^2(65.27 degrees)
 
 
-class ContactConfig(Declared):
-    """What the tips decide alike."""
+class NanoindentationConfig(Declared):
+    """`[nanoindentation]` in `config/methods.toml`."""
 
     poisson_ratio: float = Field(
         default=0.49, ge=0.0, le=0.5, description="of the specimen, to come from E* to E"
@@ -49,11 +49,6 @@ class ContactConfig(Declared):
     max_tip_compliance: float = Field(
         default=0.01, gt=0.0, description="part of the modulus due to the tip that is flagged"
     )
-
-
-class NanoindentationConfig(ContactConfig):
-    """`[nanoindentation]` in `config/methods.toml`."""
-
     unloading: tuple[float, float] = Field(
         default=(0.4, 0.95), description="parts of the peak load between which it is fitted"
     )

@@ -11,14 +11,14 @@ from deamat.core.records import Flag, Specimen
 from deamat.estimators.curves.contact import Contact, fit_contact
 from deamat.estimators.curves.slope import FEW_INDEPENDENT
 from deamat.techniques.nanoindentation.approach import EXPONENTS, Approach, Tip, in_um, in_uN
-from deamat.techniques.nanoindentation.config import ContactConfig
+from deamat.techniques.nanoindentation.config import NanoindentationConfig
 
 _CLOSER = 1.5  # residuals of the declared law over those of another that make it the likelier one
 _PULL = 0.02  # part of the peak load from which a pull on the way out is called adhesion
 
 
 def fitted_contact(
-    made: Approach, shape: str, config: ContactConfig
+    made: Approach, shape: str, config: NanoindentationConfig
 ) -> tuple[Contact, tuple[Flag, ...]]:
     """Fit the loading law of the declared tip, and insist on a load that stands out of its noise.
 
@@ -62,7 +62,7 @@ def _closer(fits: Mapping[str, Contact], shape: str) -> str:
     )
 
 
-def _refuse_faint(contact: Contact, depth: FloatArray, config: ContactConfig) -> None:
+def _refuse_faint(contact: Contact, depth: FloatArray, config: NanoindentationConfig) -> None:
     rise = float(contact.load(depth).max())
     noise = contact.residual_sd
     if rise < config.min_signal_to_noise * noise:
@@ -74,7 +74,7 @@ def _refuse_faint(contact: Contact, depth: FloatArray, config: ContactConfig) ->
         )
 
 
-def contact_of_pyramid(made: Approach, part: float, config: ContactConfig) -> Contact:
+def contact_of_pyramid(made: Approach, part: float, config: NanoindentationConfig) -> Contact:
     """Find the contact point of a pyramid on the first part of its loading.
 
     Every real tip is round at its end, and how far that matters depends on the depth: of the laws
@@ -92,7 +92,7 @@ def contact_of_pyramid(made: Approach, part: float, config: ContactConfig) -> Co
 
 
 def _fits(
-    depth: FloatArray, force: FloatArray, shapes: Sequence[str], config: ContactConfig
+    depth: FloatArray, force: FloatArray, shapes: Sequence[str], config: NanoindentationConfig
 ) -> dict[str, Contact]:
     """Fit the laws of several tips; all but the first are left out where they cannot be fitted."""
     fits: dict[str, Contact] = {}
@@ -134,7 +134,7 @@ def curve_flags(made: Approach, contact: Contact) -> tuple[Flag, ...]:
 
 
 def size_flags(
-    depth_m: float, tip: Tip, specimen: Specimen, config: ContactConfig
+    depth_m: float, tip: Tip, specimen: Specimen, config: NanoindentationConfig
 ) -> tuple[Flag, ...]:
     """Flag a contact that is not small beside the sphere or beside the specimen."""
     flags = []

@@ -6,7 +6,6 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
 from deamat.core.instruments import Machine
 from deamat.core.quantity import Contribution, Quantity
@@ -28,10 +27,13 @@ from deamat.techniques.nanoindentation.contact import (
     fitted_contact,
     size_flags,
 )
+from deamat.techniques.nanoindentation.result import Indent, LoadingLaw
 from deamat.techniques.shared.outcome import line_span, nothing_measured, recorded, relative_lines
 
 
-def reduce(specimen: Specimen, recording: Recording | None, context: Context) -> Measurement:
+def reduce(
+    specimen: Specimen, recording: Recording | None, context: Context[NanoindentationConfig]
+) -> Measurement[Indent]:
     r"""Reduce one indentation to $E = E^* (1 - \nu^2)$, the tip being rigid by declaration.
 
     - flat, radius a: $P = 2 a E^* h$, fitted to the loading with contact point and line in air;
@@ -44,12 +46,12 @@ def reduce(specimen: Specimen, recording: Recording | None, context: Context) ->
     specimen : with the note `tip`, `tip_radius_m` where the tip has one, `height_m` and
         `peak_load_N` where they are known
     recording : with `depth_m` and `force_N`
-    context : with a `NanoindentationConfig`; `machine.max_travel_m` ends the displacement
+    context : its `machine.max_travel_m` ends the displacement
 
     Source: I. N. Sneddon, Int. J. Eng. Sci. 3 (1965) 47 (flat punch); H. Hertz, J. reine angew.
     Math. 92 (1882) 156; W. C. Oliver, G. M. Pharr, J. Mater. Res. 7 (1992) 1564 and 19 (2004) 3.
     """
-    config: NanoindentationConfig = context.config
+    config = context.config
     try:
         file = recorded(recording)
         tip = declared_tip(specimen)
@@ -61,23 +63,21 @@ def reduce(specimen: Specimen, recording: Recording | None, context: Context) ->
             contact, flags = fitted_contact(made, tip.shape, config)
             value = _by_loading(made, contact, tip, tip.radius, file, context, flags)
     except FitRefused as error:
-        refused = nothing_measured(specimen, YIELDS, error, recording)
-        return replace(refused, curve=_as_read(recording))
+        return nothing_measured(specimen, YIELDS, error, recording, _as_read(recording))
     depth = float(made.depth_m[: made.end].max()) - contact.depth0
     flags = curve_flags(made, contact) + size_flags(depth, tip, specimen, config)
-    curve = {
-        "depth_m": made.depth_m - contact.depth0,
-        "force_N": made.force_N - contact.air(made.depth_m),
-    }
+    law = None if tip.radius is None else LoadingLaw(contact.stiffness, contact.exponent)
+    indent = Indent(made.depth_m - contact.depth0, made.force_N - contact.air(made.depth_m), law)
     return Measurement(
-        specimen, (replace(value, flags=value.flags + flags),), (), curve, file.source
+        specimen, (replace(value, flags=value.flags + flags),), (), indent, file.source
     )
 
 
-def _as_read(recording: Recording | None) -> dict[str, FloatArray]:
+def _as_read(recording: Recording | None) -> Indent | None:
     """Keep depth and load of a refused indent as they were read, so that a figure shows why."""
-    columns = {} if recording is None else recording.columns
-    return {name: columns[name] for name in ("depth_m", "force_N") if name in columns}
+    if recording is None or not {"depth_m", "force_N"} <= recording.columns.keys():
+        return None
+    return Indent(recording.columns["depth_m"], recording.columns["force_N"])
 
 
 def _by_loading(
@@ -86,11 +86,11 @@ def _by_loading(
     tip: Tip,
     radius: Quantity,
     recording: Recording,
-    context: Context,
+    context: Context[NanoindentationConfig],
     flags: tuple[Flag, ...],
 ) -> MeasuredValue:
     """Modulus from the stiffness K of a loading law, `P = K h^m`."""
-    config: NanoindentationConfig = context.config
+    config = context.config
     if tip.shape == "flat":
         reduced, power, law = contact.stiffness / (2.0 * radius.value), 1.0, "P = 2 a E* h"
     else:
@@ -124,10 +124,10 @@ def _by_loading(
 
 
 def _by_unloading(
-    made: Approach, contact: Contact, recording: Recording, context: Context
+    made: Approach, contact: Contact, recording: Recording, context: Context[NanoindentationConfig]
 ) -> MeasuredValue:
     """Modulus from the stiffness at peak load of a pyramid's unloading."""
-    config: NanoindentationConfig = context.config
+    config = context.config
     unloading = fit_unloading(
         made.depth_m - contact.depth0,
         made.force_N - contact.air(made.depth_m),

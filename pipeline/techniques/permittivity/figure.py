@@ -3,30 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 from deamat.core.records import Measurement, Summary
 from deamat.techniques.permittivity.config import PERMITTIVITY
+from deamat.techniques.permittivity.result import FilmSpectrum
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
-def figure(axes: Any, measurements: Sequence[Measurement], summary: Summary) -> None:
+def figure(axes: Axes, measurements: Sequence[Measurement[FilmSpectrum]], summary: Summary) -> None:
     """Draw permittivity (left, lines) and loss (right, dotted) over log f, and the card's value.
 
     Parameters
     ----------
-    axes : matplotlib axes
     measurements : those with a curve are drawn
     summary : its permittivities are drawn as black points with their 95 % intervals
     """
     right = axes.twinx()
-    for measurement in (m for m in measurements if m.curve):
-        f = measurement.curve["frequency_Hz"]
-        (line,) = axes.plot(
-            f, measurement.curve["relative_permittivity"], label=measurement.specimen.id
-        )
+    for name, film in ((m.specimen.id, m.result) for m in measurements if m.result is not None):
+        (line,) = axes.plot(film.frequency_Hz, film.relative_permittivity, label=name)
         right.plot(
-            f,
-            measurement.curve["loss_tangent"],
+            film.frequency_Hz,
+            film.loss_tangent,
             color=line.get_color(),
             linestyle=":",
             linewidth=0.8,

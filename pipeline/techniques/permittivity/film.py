@@ -53,14 +53,14 @@ class Film:
         return math.sqrt(self.area_m2) / self.thickness_m
 
 
-def film_of(numbers: Mapping[str, Quantity], context: Context) -> Film:
+def film_of(numbers: Mapping[str, Quantity], context: Context[PermittivityConfig]) -> Film:
     """Undo the micrometer's squeeze and measure the plates.
 
     Parameters
     ----------
     numbers : `thickness_m`, `plate_length_m`, `plate_width_m`, `micrometer_force_N` (0 for a
         thickness read without contact) and, if there is a force, `anvil_diameter_m`
-    context : with a `PermittivityConfig` and, if there is a force, the compressive modulus
+    context : if there is a force, the compressive modulus
 
     Raises
     ------
@@ -68,7 +68,6 @@ def film_of(numbers: Mapping[str, Quantity], context: Context) -> Film:
 
     Source: see `deamat.estimators.dielectric.squeeze`.
     """
-    config: PermittivityConfig = context.config
     read = register_length(numbers, "thickness_m")
     length = register_length(numbers, "plate_length_m")
     width = register_length(numbers, "plate_width_m")
@@ -76,7 +75,7 @@ def film_of(numbers: Mapping[str, Quantity], context: Context) -> Film:
     u_area = math.hypot(
         length.standard_uncertainty / length.value, width.standard_uncertainty / width.value
     )
-    stretch, sticking, squeezed, correction = _squeeze(numbers, read, context, config)
+    stretch, sticking, squeezed, correction = _squeeze(numbers, read, context)
     return Film(
         thickness_m=read.value / stretch,
         read_m=read.value,
@@ -93,10 +92,10 @@ def film_of(numbers: Mapping[str, Quantity], context: Context) -> Film:
 
 
 def _squeeze(
-    numbers: Mapping[str, Quantity], read: Quantity, context: Context, config: PermittivityConfig
+    numbers: Mapping[str, Quantity], read: Quantity, context: Context[PermittivityConfig]
 ) -> tuple[float, float, tuple[Contribution, ...], str]:
     """Stretch under the anvils (assumed, and if the film stuck), its budget, and words for it."""
-    force = _force(numbers)
+    config, force = context.config, _force(numbers)
     if force.value == 0.0:
         return 1.0, 1.0, (), "thickness read without contact"
     if "anvil_diameter_m" not in numbers:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -28,6 +28,7 @@ from deamat.estimators.dielectric.sweep import (
 )
 from deamat.techniques.permittivity.config import LOSS, PERMITTIVITY, PermittivityConfig
 from deamat.techniques.permittivity.film import Film, film_flags, film_of
+from deamat.techniques.permittivity.result import Dependence, FilmSpectrum
 from deamat.techniques.permittivity.spectrum import Spectrum, permittivity_of, spectrum_of
 from deamat.techniques.shared.outcome import nothing_measured, recorded, refusal, relative_lines
 
@@ -81,7 +82,9 @@ class Reading:
         return 1.0 - self.where.of(corrected) / self.where.of(bare)
 
 
-def reduce(specimen: Specimen, recording: Recording | None, context: Context) -> Measurement:
+def reduce(
+    specimen: Specimen, recording: Recording | None, context: Context[PermittivityConfig]
+) -> Measurement[FilmSpectrum]:
     r"""Reduce one film to permittivity and loss; the whole sweep is kept as its curve.
 
     $\epsilon_r = C_p d / (\epsilon_0 A)$ and $\tan\delta$ at the card's frequency, measured there
@@ -92,11 +95,11 @@ def reduce(specimen: Specimen, recording: Recording | None, context: Context) ->
     ----------
     specimen : see `film_of` for the numbers
     recording : frequency and one pair of `deamat.estimators.impedance.PAIRS`
-    context : with a `PermittivityConfig` and the compressive modulus among its needs
+    context : with the compressive modulus among its needs
 
     Source: ASTM D150; LCR-6000 manual, 13.1 for the limits of C and D.
     """
-    config: PermittivityConfig = context.config
+    config = context.config
     try:
         file = recorded(recording)
         film = film_of(specimen.numbers, context)
@@ -104,11 +107,7 @@ def reduce(specimen: Specimen, recording: Recording | None, context: Context) ->
     except FitRefused as error:
         return nothing_measured(specimen, (PERMITTIVITY, LOSS), error, recording)
     permittivity, loss = permittivity_of(spectrum.capacitance_F, film, config.edge_field)
-    curve = {
-        "frequency_Hz": spectrum.frequency_Hz,
-        "relative_permittivity": permittivity,
-        "loss_tangent": loss,
-    }
+    curve = FilmSpectrum(spectrum.frequency_Hz, permittivity, loss)
     try:
         where = _card_position(spectrum, config)
     except FitRefused as error:
@@ -117,8 +116,10 @@ def reduce(specimen: Specimen, recording: Recording | None, context: Context) ->
         return Measurement(specimen, (), refusals, curve, file.source)
     reading = Reading(film, spectrum, permittivity, loss, where, config)
     flags = file.flags + _flags(reading, "level_V" in file.metadata)
-    values = (_permittivity(reading, flags), _loss(reading, flags))
-    return Measurement(specimen, values, (), curve, file.source)
+    dependence = _dependence(reading)
+    values = (_permittivity(reading, dependence, flags), _loss(reading, flags))
+    whole = replace(curve, dependence=dependence)
+    return Measurement(specimen, values, (), whole, file.source)
 
 
 def _card_position(spectrum: Spectrum, config: PermittivityConfig) -> Position:
@@ -139,7 +140,9 @@ def _card_position(spectrum: Spectrum, config: PermittivityConfig) -> Position:
     return position(spectrum.frequency_Hz, card, tolerance, config.widest_gap_decades)
 
 
-def _permittivity(reading: Reading, flags: tuple[Flag, ...]) -> MeasuredValue:
+def _permittivity(
+    reading: Reading, dependence: Dependence, flags: tuple[Flag, ...]
+) -> MeasuredValue:
     config, spectrum = reading.config, reading.spectrum
     value = reading.where.of(reading.permittivity)
     limit = reading.where.of(spectrum.limit * np.hypot(1.0, spectrum.loss))
@@ -172,7 +175,11 @@ def _permittivity(reading: Reading, flags: tuple[Flag, ...]) -> MeasuredValue:
         method=f"C d / (eps0 A) {reading.how}; {reading.film.correction}; edge field {edge_words}",
         conditions=reading.conditions,
         lines=reading.lines,
-        diagnostics={**_film_diagnostics(reading, value), **_dependence(reading, value)},
+        diagnostics={
+            **_film_diagnostics(reading, value),
+            **_dependence_diagnostics(dependence),
+            **_resistance_diagnostics(spectrum),
+        },
         flags=flags,
     )
 
@@ -218,30 +225,44 @@ def _film_diagnostics(reading: Reading, value: float) -> dict[str, Detail]:
     }
 
 
-def _dependence(reading: Reading, value: float) -> dict[str, Detail]:
-    """Permittivity at the stated frequencies, slope per decade, resistance in series."""
+def _dependence(reading: Reading) -> Dependence:
+    """Permittivity at the stated frequencies, slope per decade, change to the top frequency."""
     config, spectrum, curve = reading.config, reading.spectrum, reading.permittivity
     f, limit = spectrum.frequency_Hz, spectrum.limit
-    found: dict[str, Detail] = {}
+    found: dict[float, float] = {}
     for stated in config.stated_frequencies_Hz:
         try:
             at = position(f, stated, config.frequency_tolerance, config.widest_gap_decades)
         except FitRefused:
             continue  # a sweep that does not reach so far says nothing there
-        found[f"relative_permittivity_{stated:g}_Hz"] = at.of(curve)
+        found[stated] = at.of(curve)
     slope, u_slope = slope_per_decade(f, curve, curve * limit)
-    by_meter = math.hypot(reading.where.of(limit), float(limit[-1])) / _LIMIT_TO_SIGMA
-    found |= {
-        "slope_per_decade": slope,
-        "u_slope_per_decade": u_slope,
-        "top_frequency_Hz": float(f[-1]),
-        "change_to_top_frequency": float(curve[-1]) / value - 1.0,
-        "u_change_by_meter": by_meter,
+    return Dependence(
+        stated=found,
+        slope_per_decade=slope,
+        u_slope_per_decade=u_slope,
+        top_frequency_Hz=float(f[-1]),
+        change_to_top=float(curve[-1]) / reading.where.of(curve) - 1.0,
+        u_change_by_meter=math.hypot(reading.where.of(limit), float(limit[-1])) / _LIMIT_TO_SIGMA,
+    )
+
+
+def _dependence_diagnostics(found: Dependence) -> dict[str, Detail]:
+    return {
+        **{f"relative_permittivity_{f:g}_Hz": value for f, value in found.stated.items()},
+        "slope_per_decade": found.slope_per_decade,
+        "u_slope_per_decade": found.u_slope_per_decade,
+        "top_frequency_Hz": found.top_frequency_Hz,
+        "change_to_top_frequency": found.change_to_top,
+        "u_change_by_meter": found.u_change_by_meter,
     }
-    resistance = _resistance(spectrum)
-    if resistance is not None:
-        found |= {"series_resistance_ohm": resistance[0], "u_series_resistance_ohm": resistance[1]}
-    return found
+
+
+def _resistance_diagnostics(spectrum: Spectrum) -> dict[str, Detail]:
+    found = _resistance(spectrum)
+    if found is None:
+        return {}
+    return {"series_resistance_ohm": found[0], "u_series_resistance_ohm": found[1]}
 
 
 def _resistance(spectrum: Spectrum) -> tuple[float, float] | None:

@@ -8,33 +8,62 @@ from dataclasses import replace
 
 from deamat.core.records import Detail, Measurement, PropertyRecord, Summary
 from deamat.core.technique import Context
-from deamat.techniques.permittivity.config import PERMITTIVITY, VERSION, YIELDS, PermittivityConfig
+from deamat.techniques.permittivity.config import (
+    PERMITTIVITY,
+    VERSION,
+    YIELDS,
+    PermittivityConfig,
+)
+from deamat.techniques.permittivity.result import Dependence, FilmSpectrum
 from deamat.techniques.shared.mean import summarise_by_mean
 
 
-def summarise(measurements: Sequence[Measurement], context: Context) -> Summary:
+def summarise(
+    measurements: Sequence[Measurement[FilmSpectrum]], context: Context[PermittivityConfig]
+) -> Summary:
     """Average the films and state how the permittivity depends on frequency."""
-    config: PermittivityConfig = context.config
     summary = summarise_by_mean(measurements, f"permittivity@{VERSION}", YIELDS)
     return replace(
         summary,
         records=tuple(
-            _with_dependence(record, config) if record.key == PERMITTIVITY else record
+            _with_dependence(record, _films_of(record, measurements), context.config)
+            if record.key == PERMITTIVITY
+            else record
             for record in summary.records
         ),
     )
 
 
-def _with_dependence(record: PropertyRecord, config: PermittivityConfig) -> PropertyRecord:
+def _films_of(
+    record: PropertyRecord, measurements: Sequence[Measurement[FilmSpectrum]]
+) -> list[Dependence]:
+    """Find what the films behind a record say of their dependence on frequency."""
+    return [
+        m.result.dependence
+        for m in measurements
+        if m.result is not None
+        and m.result.dependence is not None
+        and any({**m.specimen.conditions, **v.conditions} == record.conditions for v in m.values)
+    ]
+
+
+def _with_dependence(
+    record: PropertyRecord, films: Sequence[Dependence], config: PermittivityConfig
+) -> PropertyRecord:
     """Add the mean permittivity at the stated frequencies and the change up to the highest."""
-    names = [f"relative_permittivity_{f:g}_Hz" for f in config.stated_frequencies_Hz]
-    means = {name: _mean(record, name) for name in [*names, "slope_per_decade"]}
-    change, top = _mean(record, "change_to_top_frequency"), _mean(record, "top_frequency_Hz")
-    if change is None or top is None:
-        return record
-    u = math.hypot(_mean(record, "u_change_by_meter") or 0.0, _scatter(record))
-    details: dict[str, Detail] = {name: mean for name, mean in means.items() if mean is not None}
-    details |= {"change_to_top_frequency": change, "u_change_to_top_frequency": u}
+    change = _mean([f.change_to_top for f in films])
+    top = _mean([f.top_frequency_Hz for f in films])
+    u = math.hypot(_mean([f.u_change_by_meter for f in films]), _scatter(films))
+    details: dict[str, Detail] = {
+        f"relative_permittivity_{stated:g}_Hz": _mean([f.stated[stated] for f in films])
+        for stated in config.stated_frequencies_Hz
+        if all(stated in f.stated for f in films)
+    }
+    details |= {
+        "slope_per_decade": _mean([f.slope_per_decade for f in films]),
+        "change_to_top_frequency": change,
+        "u_change_to_top_frequency": u,
+    }
     span = f"from {config.card_frequency_Hz:g} Hz to {top:g} Hz"
     told = f"{'falls' if change < 0 else 'rises'} by {100 * abs(change):.2g} % {span}"
     if abs(change) < 2.0 * u:
@@ -46,20 +75,14 @@ def _with_dependence(record: PropertyRecord, config: PermittivityConfig) -> Prop
     )
 
 
-def _values(record: PropertyRecord, name: str) -> list[float]:
-    return [float(o.diagnostics[name]) for o in record.origins if name in o.diagnostics]
+def _mean(values: Sequence[float]) -> float:
+    return math.fsum(values) / len(values)
 
 
-def _mean(record: PropertyRecord, name: str) -> float | None:
-    """Mean over the specimens; None unless every one of them has it."""
-    values = _values(record, name)
-    return math.fsum(values) / len(values) if len(values) == len(record.origins) else None
-
-
-def _scatter(record: PropertyRecord) -> float:
+def _scatter(films: Sequence[Dependence]) -> float:
     """Standard error of the mean change; the meter's part is in no specimen's scatter."""
-    values = _values(record, "change_to_top_frequency")
+    values = [f.change_to_top for f in films]
     if len(values) < 2:
         return 0.0
-    mean = math.fsum(values) / len(values)
+    mean = _mean(values)
     return math.sqrt(math.fsum((v - mean) ** 2 for v in values) / (len(values) - 1) / len(values))

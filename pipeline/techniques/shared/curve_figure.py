@@ -3,57 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from deamat.core.records import Detail, MeasuredValue, Measurement
+from deamat.core.records import Measurement
 from deamat.core.units import from_si
+from deamat.techniques.shared.modulus import LoadingCurve, WindowLine
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _MPA_FROM = 1e6  # from this stress on, MPa reads better than kPa
 
 
-def draw_curves(axes: Any, measurements: Sequence[Measurement], modulus_key: str) -> None:
-    """Draw nominal stress over nominal strain of each specimen, with window and fitted lines.
-
-    Parameters
-    ----------
-    axes : matplotlib axes
-    measurements : those with a curve are drawn
-    modulus_key : the value whose window is shaded and whose line is drawn
-    """
-    drawn = [m for m in measurements if m.curve]
-    greatest = max((float(m.curve["nominal_stress_Pa"].max()) for m in drawn), default=0.0)
+def draw_curves(axes: Axes, measurements: Sequence[Measurement[LoadingCurve]]) -> None:
+    """Draw nominal stress over nominal strain of each specimen, with window and fitted line."""
+    drawn = [(m.specimen.id, m.result) for m in measurements if m.result is not None]
+    greatest = max((float(c.nominal_stress_Pa.max()) for _, c in drawn), default=0.0)
     unit = "MPa" if greatest >= _MPA_FROM else "kPa"
-    shaded: set[tuple[float, float]] = set()
-    for measurement in drawn:
-        strain, stress = measurement.curve["nominal_strain"], measurement.curve["nominal_stress_Pa"]
+    for name, curve in drawn:
         axes.plot(
-            100.0 * strain,
-            from_si(1.0, unit) * stress,
+            100.0 * curve.nominal_strain,
+            from_si(1.0, unit) * curve.nominal_stress_Pa,
             linewidth=0.8,
-            label=measurement.specimen.id,
+            label=name,
         )
-        for value in measurement.values:
-            if value.key == modulus_key:
-                shaded.add(_window(value))
-                _line(axes, value, unit)
-    for low, high in sorted(shaded):
+        if curve.line is not None:
+            _draw_line(axes, curve.line, unit)
+    for low, high in sorted({c.line.window for _, c in drawn if c.line is not None}):
         axes.axvspan(100.0 * low, 100.0 * high, alpha=0.15, color="0.5", linewidth=0)
     axes.set_xlabel("nominal strain [%]")
     axes.set_ylabel(f"nominal stress [{unit}]")
 
 
-def _window(value: MeasuredValue) -> tuple[float, float]:
-    window = value.conditions["window"]
-    if not isinstance(window, tuple):
-        raise TypeError(f"the window of {value.key} is {window!r}, not two strains")
-    return window
-
-
-def _line(axes: Any, value: MeasuredValue, unit: str) -> None:
-    low, high = _window(value)
-    intercept: Detail = value.diagnostics["intercept_Pa"]
-    strain = np.array((low, high))
-    stress = float(intercept) + value.quantity.value * strain
+def _draw_line(axes: Axes, line: WindowLine, unit: str) -> None:
+    strain = np.array(line.window)
+    stress = line.intercept_Pa + line.slope_Pa * strain
     axes.plot(100.0 * strain, from_si(1.0, unit) * stress, color="black", linewidth=1.2)

@@ -16,15 +16,16 @@ from deamat.core.records import (
     Measurement,
     Origin,
     PropertyRecord,
+    Result,
     Summary,
 )
 from deamat.estimators.mean import mean_with_shared, outliers
 
-Pair = tuple[Measurement, MeasuredValue]
+Pair = tuple[Measurement[Result], MeasuredValue]
 
 
 def summarise_by_mean(
-    measurements: Sequence[Measurement], technique: str, keys: Sequence[str]
+    measurements: Sequence[Measurement[Result]], technique: str, keys: Sequence[str]
 ) -> Summary:
     """Average each property over the specimens that gave it; values of other conditions stay apart.
 
@@ -116,7 +117,7 @@ def _shared_lines(pairs: Sequence[Pair]) -> tuple[Contribution, ...]:
     return tuple(Contribution(source, u / len(pairs), True) for source, u in totals.items())
 
 
-def origin_of(measurement: Measurement, value: MeasuredValue, technique: str) -> Origin:
+def origin_of(measurement: Measurement[Result], value: MeasuredValue, technique: str) -> Origin:
     """Trace a record to one specimen's value, its register row and its bytes."""
     specimen, source = measurement.specimen, measurement.source
     first, last = (None, None) if value.lines is None else value.lines

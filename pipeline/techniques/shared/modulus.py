@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
@@ -13,6 +14,44 @@ from deamat.estimators.curves.slope import FEW_INDEPENDENT, Line, fit_line, outl
 from deamat.estimators.curves.stress_strain import reloads
 from deamat.techniques.shared.outcome import line_span, relative_lines
 from deamat.techniques.shared.stress_strain import IndexArray, StressStrain
+
+
+@dataclass(frozen=True, slots=True)
+class WindowLine:
+    """The line that was fitted to a window of nominal strain.
+
+    Parameters
+    ----------
+    window : lowest and highest nominal strain
+    slope_Pa, intercept_Pa : the modulus, and the stress at zero strain
+    """
+
+    window: tuple[float, float]
+    slope_Pa: float
+    intercept_Pa: float
+
+
+@dataclass(frozen=True, slots=True)
+class LoadingCurve:
+    """The first loading of a specimen and the line of its modulus.
+
+    Parameters
+    ----------
+    nominal_strain, nominal_stress_Pa : shape (n,) each
+    line : None where the modulus was refused
+    """
+
+    nominal_strain: FloatArray
+    nominal_stress_Pa: FloatArray
+    line: WindowLine | None
+
+    @property
+    def columns(self) -> dict[str, FloatArray]:
+        """Strain and stress."""
+        return {
+            "nominal_strain": self.nominal_strain,
+            "nominal_stress_Pa": self.nominal_stress_Pa,
+        }
 
 
 def conditions_of_test(

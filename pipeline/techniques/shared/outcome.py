@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from typing import TypeVar
 
 from deamat.core.errors import FitRefused
 from deamat.core.quantity import Contribution
-from deamat.core.records import Condition, Measurement, Recording, Refusal, Source, Specimen
+from deamat.core.records import Condition, Measurement, Recording, Refusal, Result, Source, Specimen
+
+R = TypeVar("R", bound=Result)
 
 
 def recorded(recording: Recording | None) -> Recording:
@@ -53,13 +56,17 @@ def refusal(
 
 
 def nothing_measured(
-    specimen: Specimen, keys: Iterable[str], error: FitRefused, recording: Recording | None
-) -> Measurement:
-    """Refuse every property of a specimen whose curve cannot be made."""
+    specimen: Specimen,
+    keys: Iterable[str],
+    error: FitRefused,
+    recording: Recording | None,
+    result: R | None = None,
+) -> Measurement[R]:
+    """Refuse every property of a specimen; a result is kept where it shows why."""
     return Measurement(
         specimen,
         (),
         tuple(refusal(specimen, key, error, {}) for key in keys),
-        {},
+        result,
         None if recording is None else recording.source,
     )

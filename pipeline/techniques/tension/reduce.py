@@ -20,6 +20,8 @@ from deamat.core.technique import Context
 from deamat.estimators.curves.stress_strain import Break, find_break, loading_branch, window
 from deamat.techniques.shared.geometry import rectangular_section, register_length
 from deamat.techniques.shared.modulus import (
+    LoadingCurve,
+    WindowLine,
     conditions_of_test,
     flags_of_loading,
     modulus,
@@ -37,7 +39,9 @@ from deamat.techniques.shared.stress_strain import StressStrain, disagreement, s
 from deamat.techniques.tension.config import ELONGATION, MODULUS, STRENGTH, YIELDS, TensionConfig
 
 
-def reduce(specimen: Specimen, recording: Recording | None, context: Context) -> Measurement:
+def reduce(
+    specimen: Specimen, recording: Recording | None, context: Context[TensionConfig]
+) -> Measurement[LoadingCurve]:
     r"""Reduce one strip to modulus, strength and elongation; each stands or falls by itself.
 
     $Y_t = d\sigma/d\varepsilon$ over the window by ordinary least squares with an intercept,
@@ -49,11 +53,10 @@ def reduce(specimen: Specimen, recording: Recording | None, context: Context) ->
     specimen : with `width_m`, `thickness_m` and `gauge_length_m`; `speed_m_per_s` gives the
         condition `rate_per_s`
     recording : see `shared.stress_strain.stress_strain`
-    context : with a `TensionConfig`
 
     Source: ASTM D412.
     """
-    config: TensionConfig = context.config
+    config = context.config
     try:
         file = recorded(recording)
         gauge = register_length(specimen.numbers, "gauge_length_m")
@@ -69,8 +72,10 @@ def reduce(specimen: Specimen, recording: Recording | None, context: Context) ->
     slope_conditions = conditions_of_test(specimen, config.window, gauge)
     conditions = conditions_of_test(specimen, None, gauge)
     flags = flags_of_loading(file, curve, branch)
+    line = None
     try:
-        values.append(_modulus(curve, end, file, config, slope_conditions, flags))
+        value, line = _modulus(curve, end, file, config, slope_conditions, flags)
+        values.append(value)
     except FitRefused as error:
         refusals.append(refusal(specimen, MODULUS, error, slope_conditions))
     try:
@@ -81,10 +86,7 @@ def reduce(specimen: Specimen, recording: Recording | None, context: Context) ->
         specimen,
         tuple(values),
         tuple(refusals),
-        {
-            "nominal_strain": curve.nominal_strain[:end],
-            "nominal_stress_Pa": curve.nominal_stress_Pa[:end],
-        },
+        LoadingCurve(curve.nominal_strain[:end], curve.nominal_stress_Pa[:end], line),
         file.source,
     )
 
@@ -96,13 +98,14 @@ def _modulus(
     config: TensionConfig,
     conditions: Mapping[str, Condition],
     flags: tuple[Flag, ...],
-) -> MeasuredValue:
+) -> tuple[MeasuredValue, WindowLine]:
     low, high = config.window
     strain, stress = curve.nominal_strain[:end], curve.nominal_stress_Pa[:end]
     inside = window(strain, low, high, config.min_samples, config.unloading_tolerance)
-    return modulus(
+    line = rising_line(strain[inside], stress[inside], config.min_samples)
+    value = modulus(
         MODULUS,
-        rising_line(strain[inside], stress[inside], config.min_samples),
+        line,
         curve,
         inside,
         recording,
@@ -111,6 +114,7 @@ def _modulus(
         flags=flags + disagreement(curve, inside, config.own_columns_tolerance),
         diagnostics={},
     )
+    return value, WindowLine(config.window, line.slope, line.intercept)
 
 
 def _ultimate(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,38 +11,45 @@ from deamat.core.arrays import FloatArray
 from deamat.core.records import Law, Measurement, Summary
 from deamat.core.units import from_si
 from deamat.techniques.viscosity.config import VISCOSITY
+from deamat.techniques.viscosity.flow_curve import FlowReadings
+from deamat.techniques.viscosity.readings import Readings
+from deamat.techniques.viscosity.result import Run
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _POINTS = 200
 _HOURS_FROM_S = 7200.0
 _DECADES = 100.0
 
 
-def figure(axes: Any, measurements: Sequence[Measurement], summary: Summary) -> None:
+def figure(axes: Axes, measurements: Sequence[Measurement[Run]], summary: Summary) -> None:
     """Draw the readings of every run, also those not fitted, and the law over its range.
 
     A cure that spans decades is drawn in logarithms, for its law ends where the curve takes off.
     """
+    runs: list[tuple[str, Readings]] = []
     for measurement in measurements:
-        if "shear_rate_per_s" in measurement.curve:
-            _flow_curve(axes, measurement)
+        if isinstance(measurement.result, FlowReadings):
+            _flow_curve(axes, measurement.specimen.id, measurement.result)
             return
-    longest = max((float(m.curve["time_s"].max()) for m in measurements if m.curve), default=0.0)
+        if measurement.result is not None:
+            runs.append((measurement.specimen.id, measurement.result))
+    longest = max((float(r.time_s.max()) for _, r in runs), default=0.0)
     unit = "h" if longest >= _HOURS_FROM_S else "s"
-    spans = [m.curve["viscosity_Pas"] for m in measurements if m.curve]
-    spans = [v[v > 0] for v in spans]
+    spans = [r.viscosity_Pas[r.viscosity_Pas > 0] for _, r in runs]
     wide = any(v.size and v.max() > _DECADES * v.min() for v in spans)
     scaled = np.log10 if wide else np.asarray
-    for measurement in measurements:
-        if measurement.curve:
-            shown = measurement.curve["viscosity_Pas"] > 0
-            axes.plot(
-                from_si(1.0, unit) * measurement.curve["time_s"][shown],
-                scaled(measurement.curve["viscosity_Pas"][shown]),
-                linestyle="none",
-                marker=".",
-                markersize=3,
-                label=measurement.specimen.id,
-            )
+    for name, readings in runs:
+        shown = readings.viscosity_Pas > 0
+        axes.plot(
+            from_si(1.0, unit) * readings.time_s[shown],
+            scaled(readings.viscosity_Pas[shown]),
+            linestyle="none",
+            marker=".",
+            markersize=3,
+            label=name,
+        )
     for law in summary.laws:
         if law.key == VISCOSITY:
             _law(axes, law, unit, scaled)
@@ -50,7 +57,7 @@ def figure(axes: Any, measurements: Sequence[Measurement], summary: Summary) -> 
     axes.set_ylabel("log10 of viscosity [Pa.s]" if wide else "viscosity [Pa.s]")
 
 
-def _law(axes: Any, law: Law, unit: str, scaled: Callable[[FloatArray], FloatArray]) -> None:
+def _law(axes: Axes, law: Law, unit: str, scaled: Callable[[FloatArray], FloatArray]) -> None:
     times = np.linspace(*law.valid, _POINTS)
     for rate in law.rates or (None,):
         values = np.array([law(float(t), rate).value for t in times])
@@ -62,14 +69,13 @@ def _law(axes: Any, law: Law, unit: str, scaled: Callable[[FloatArray], FloatArr
     axes.axvspan(from_si(low, unit), from_si(high, unit), alpha=0.15, color="0.5", linewidth=0)
 
 
-def _flow_curve(axes: Any, measurement: Measurement) -> None:
-    curve = measurement.curve
+def _flow_curve(axes: Axes, name: str, curve: FlowReadings) -> None:
     axes.plot(
-        np.log10(curve["shear_rate_per_s"]),
-        np.log10(curve["viscosity_Pas"]),
+        np.log10(curve.shear_rate_per_s),
+        np.log10(curve.viscosity_Pas),
         linestyle="none",
         marker=".",
-        label=measurement.specimen.id,
+        label=name,
     )
     axes.set_xlabel("log10 of shear rate [1/s]")
     axes.set_ylabel("log10 of viscosity [Pa.s]")

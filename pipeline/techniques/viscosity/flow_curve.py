@@ -26,6 +26,22 @@ NEWTONIAN, POWER_LAW = "Newtonian", "power law"
 
 
 @dataclass(frozen=True, slots=True)
+class FlowReadings:
+    """Viscosity against shear rate, shape (n,) each."""
+
+    shear_rate_per_s: FloatArray
+    viscosity_Pas: FloatArray
+
+    @property
+    def columns(self) -> dict[str, FloatArray]:
+        """Rate and viscosity."""
+        return {
+            "shear_rate_per_s": self.shear_rate_per_s,
+            "viscosity_Pas": self.viscosity_Pas,
+        }
+
+
+@dataclass(frozen=True, slots=True)
 class FlowCurve:
     """What the readings support.
 
@@ -109,7 +125,7 @@ def fit_flow_curve(rate_per_s: FloatArray, viscosity_Pas: FloatArray) -> FlowCur
 
 def flow_curve_values(
     specimen: Specimen, recording: Recording
-) -> tuple[tuple[MeasuredValue, ...], dict[str, FloatArray]]:
+) -> tuple[tuple[MeasuredValue, ...], FlowReadings]:
     """Reduce a file of shear rates to K and n, or to a Newtonian viscosity, and the curve itself.
 
     Raises
@@ -150,7 +166,7 @@ def flow_curve_values(
             )
         )
     )
-    return values, {"shear_rate_per_s": rate[good], "viscosity_Pas": viscosity[good]}
+    return values, FlowReadings(rate[good], viscosity[good])
 
 
 def _value(

@@ -153,6 +153,7 @@ def fit_fluid(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeLaw |
             "rate_per_rpm_per_s": factor.per_s_per_rpm,
             "rate_source": factor.source,
         },
+        rate_per_rpm_per_s=factor.per_s_per_rpm,
     )
     return _compared(fitted, stages)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache, partial
 
 import numpy as np
@@ -16,8 +16,7 @@ from deamat.core.records import Detail, Flag
 from deamat.estimators.least_squares.fit import Fit
 from deamat.estimators.least_squares.linear import fit_linear
 from deamat.estimators.least_squares.monotone import fit_non_decreasing
-from deamat.estimators.least_squares.nonlinear import NonlinearFit, fit_nonlinear
-from deamat.estimators.least_squares.polynomial import PolynomialFit
+from deamat.estimators.least_squares.nonlinear import fit_nonlinear
 from deamat.estimators.selection import Choice, choose, choose_for
 from deamat.techniques.viscosity.calibration import settled
 from deamat.techniques.viscosity.config import ViscosityConfig
@@ -27,8 +26,22 @@ from deamat.techniques.viscosity.window import Windowed, combined, common_range
 
 # A law that predicts left-out readings worse than the best by more than this is flagged.
 _PREDICTS_WORSE = 1.1
-_KIND_BY_COEFFICIENTS = {2: EXPONENTIAL, 3: POWER_LAW_TO_GEL}  # of the nonlinear laws
 _GEL_TIMES = np.geomspace(1.02, 8.0, 10)  # over the last time: where to start looking for the gel
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LawFit(Fit):
+    """One law fitted to the readings.
+
+    Parameters
+    ----------
+    kind, coefficients : as `core.laws.FORMS` takes them
+    covariance : of the coefficients, shape (p, p)
+    """
+
+    kind: str
+    coefficients: FloatArray
+    covariance: FloatArray
 
 
 def fit_newtonian(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeLaw:
@@ -46,8 +59,8 @@ def fit_newtonian(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeL
     steps = settled(combined(windows), config.max_degree)
     readings = steps.readings
     choice = _chosen(readings, config)
-    kind, coefficients, covariance = _parameters(choice.fit)
-    law, slopes = FORMS[kind](coefficients, readings.time_s, None, ())
+    fit = choice.fit
+    law, slopes = FORMS[fit.kind](fit.coefficients, readings.time_s, None, ())
     relative = relative_error(readings.viscosity_Pas, law)
     if relative > config.max_relative_error:
         raise FitRefused(
@@ -57,21 +70,21 @@ def fit_newtonian(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeL
             {"relative_error": relative, **scores(choice)},
         )
     return TimeLaw(
-        kind=kind,
-        coefficients=coefficients,
+        kind=fit.kind,
+        coefficients=fit.coefficients,
         parts=(),
-        covariance=covariance,
+        covariance=fit.covariance,
         drift=drift_of(
-            covariance,
-            choice.fit.error_variance,
+            fit.covariance,
+            fit.error_variance,
             slopes,
             readings.noise_Pas,
             readings.calibration_Pas,
         ),
-        valid=_valid(kind, coefficients, windows),
+        valid=_valid(fit, windows),
         rates=None,
         relative_error=relative,
-        dof=choice.fit.dof,
+        dof=fit.dof,
         name=choice.name,
         reason=choice.reason,
         diagnostics={
@@ -83,7 +96,7 @@ def fit_newtonian(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeL
     )
 
 
-def _chosen(readings: Readings, config: ViscosityConfig) -> Choice[Fit]:
+def _chosen(readings: Readings, config: ViscosityConfig) -> Choice[LawFit]:
     """Take the law that the data support, or the cheapest that answers at all stated times."""
     offers = [(name, cost, cache(fit)) for cost, name, fit in _offers(readings, config)]
     if config.answer_within is None:
@@ -102,18 +115,17 @@ def _chosen(readings: Readings, config: ViscosityConfig) -> Choice[Fit]:
     )
 
 
-def _answer(fit: Fit, time_s: float) -> tuple[float, float]:
+def _answer(fit: LawFit, time_s: float) -> tuple[float, float]:
     """Viscosity at a time and its standard uncertainty `[Pa.s]`."""
-    kind, coefficients, covariance = _parameters(fit)
-    value, slopes = FORMS[kind](coefficients, np.array([time_s]), None, ())
-    return float(value[0]), math.sqrt(max(float(slopes[0] @ covariance @ slopes[0]), 0.0))
+    value, slopes = FORMS[fit.kind](fit.coefficients, np.array([time_s]), None, ())
+    return float(value[0]), math.sqrt(max(float(slopes[0] @ fit.covariance @ slopes[0]), 0.0))
 
 
 def _offers(
     readings: Readings, config: ViscosityConfig
-) -> list[tuple[int, str, Callable[[], Fit]]]:
+) -> list[tuple[int, str, Callable[[], LawFit]]]:
     """All laws on offer, the one with fewest coefficients first."""
-    offers: list[tuple[int, str, Callable[[], Fit]]] = []
+    offers: list[tuple[int, str, Callable[[], LawFit]]] = []
     if POLYNOMIAL in config.laws:
         offers += [
             (degree + 1, f"{POLYNOMIAL} of degree {degree}", partial(_polynomial, readings, degree))
@@ -126,13 +138,14 @@ def _offers(
     return sorted(offers, key=lambda offer: offer[0])
 
 
-def _polynomial(readings: Readings, degree: int) -> PolynomialFit:
-    return fit_non_decreasing(
+def _polynomial(readings: Readings, degree: int) -> LawFit:
+    fit = fit_non_decreasing(
         readings.time_s, readings.viscosity_Pas, degree, 0.0, readings.noise_Pas
     ).fit
+    return _law_fit(POLYNOMIAL, fit, fit.coefficients, fit.covariance)
 
 
-def _exponential(readings: Readings) -> NonlinearFit:
+def _exponential(readings: Readings) -> LawFit:
     t, y, weight = _logarithms(readings)
     line = fit_linear(np.stack([np.ones_like(t), t], axis=1), y, weight).parameters
     if not line[1] > 0:
@@ -140,7 +153,7 @@ def _exponential(readings: Readings) -> NonlinearFit:
     return _nonlinear(EXPONENTIAL, readings, np.array([np.exp(line[0]), line[1]]))
 
 
-def _power_law_to_gel(readings: Readings) -> NonlinearFit:
+def _power_law_to_gel(readings: Readings) -> LawFit:
     """Start from the gel time, of many, whose straight line in logarithms fits best."""
     t, y, weight = _logarithms(readings)
     best: tuple[float, FloatArray] | None = None
@@ -164,7 +177,7 @@ def _logarithms(readings: Readings) -> tuple[FloatArray, FloatArray, FloatArray]
 
 def _nonlinear(
     kind: str, readings: Readings, start: FloatArray, lower: FloatArray | None = None
-) -> NonlinearFit:
+) -> LawFit:
     """Fit a form with coefficients scaled to about 1, as its search likes them."""
     form, times = FORMS[kind], readings.time_s
 
@@ -183,36 +196,35 @@ def _nonlinear(
             readings.noise_Pas,
             lower=None if lower is None else lower / start,
         )
-    return _scaled(fit, start)
+    return _law_fit(kind, fit, fit.parameters * start, fit.covariance * np.outer(start, start))
 
 
-def _scaled(fit: NonlinearFit, scale: FloatArray) -> NonlinearFit:
-    return replace(
-        fit,
-        parameters=fit.parameters * scale,
-        covariance=fit.covariance * np.outer(scale, scale),
+def _law_fit(kind: str, fit: Fit, coefficients: FloatArray, covariance: FloatArray) -> LawFit:
+    return LawFit(
+        kind=kind,
+        coefficients=coefficients,
+        covariance=covariance,
+        y=fit.y,
+        sigma=fit.sigma,
+        residuals=fit.residuals,
+        leverages=fit.leverages,
+        residual_sd=fit.residual_sd,
+        dof=fit.dof,
+        condition_number=fit.condition_number,
+        error_scale=fit.error_scale,
     )
 
 
-def _parameters(fit: Fit) -> tuple[str, FloatArray, FloatArray]:
-    """Kind, coefficients and covariance of a fit."""
-    if isinstance(fit, PolynomialFit):
-        return POLYNOMIAL, fit.coefficients, fit.covariance
-    if isinstance(fit, NonlinearFit):
-        return _KIND_BY_COEFFICIENTS[len(fit.parameters)], fit.parameters, fit.covariance
-    raise TypeError(f"a {type(fit).__name__} is neither a polynomial nor a nonlinear fit")
-
-
-def _valid(kind: str, coefficients: FloatArray, windows: Sequence[Windowed]) -> tuple[float, float]:
+def _valid(fit: LawFit, windows: Sequence[Windowed]) -> tuple[float, float]:
     """Reach to the edges of the window where the law goes on rising, else to the last readings."""
     outer = common_range([w.valid for w in windows])
     inner = common_range(
         [(float(w.readings.time_s[0]), float(w.readings.time_s[-1])) for w in windows]
     )
-    if kind == POWER_LAW_TO_GEL and outer[1] >= coefficients[1]:
+    if fit.kind == POWER_LAW_TO_GEL and outer[1] >= fit.coefficients[1]:
         return inner
     low, first, last, high = (
-        evaluate(kind, coefficients, (), t)[0] for t in (outer[0], *inner, outer[1])
+        evaluate(fit.kind, fit.coefficients, (), t)[0] for t in (outer[0], *inner, outer[1])
     )
     return (
         outer[0] if 0 < low <= first else inner[0],
@@ -220,7 +232,7 @@ def _valid(kind: str, coefficients: FloatArray, windows: Sequence[Windowed]) -> 
     )
 
 
-def scores(choice: Choice[Fit]) -> dict[str, Detail]:
+def scores(choice: Choice[LawFit]) -> dict[str, Detail]:
     """Keep what every candidate scored, or why it has no score."""
     said: dict[str, Detail] = {"choice": choice.reason}
     for tried in choice.tried:
@@ -233,7 +245,7 @@ def scores(choice: Choice[Fit]) -> dict[str, Detail]:
     return said
 
 
-def _flags(choice: Choice[Fit]) -> tuple[Flag, ...]:
+def _flags(choice: Choice[LawFit]) -> tuple[Flag, ...]:
     """Flag a choice that cross-validation does not bear out."""
     predicted = {t.name: t.leave_one_out_sd for t in choice.tried if t.leave_one_out_sd is not None}
     if choice.name not in predicted:

@@ -97,8 +97,8 @@ def _level(law: TimeLaw, window: Windowed) -> float:
     r = window.readings
     inside = (r.time_s >= law.valid[0]) & (r.time_s <= law.valid[1])
     rates = None
-    if law.kind == POWER_LAW_FLUID:
-        rates = float(law.diagnostics["rate_per_rpm_per_s"]) * r.speed_rpm[inside]
+    if law.rate_per_rpm_per_s is not None:
+        rates = law.rate_per_rpm_per_s * r.speed_rpm[inside]
     model, _ = FORMS[law.kind](law.coefficients, r.time_s[inside], rates, law.parts)
     weight = 1.0 / np.square(r.noise_Pas[inside])
     return float(np.sum(weight * r.viscosity_Pas[inside] * model) / np.sum(weight * model**2))

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,9 +63,10 @@ class Readings:
         """Every column by name."""
         return {name: getattr(self, name) for name in _COLUMNS}
 
-    def where(self, chosen: Any) -> Readings:
+    def where(self, chosen: NDArray[np.bool_] | NDArray[np.intp] | slice) -> Readings:
         """Keep the chosen readings (a mask, an index array or a slice)."""
-        return replace(self, **{name: column[chosen] for name, column in self.columns.items()})
+        kept = {name: column[chosen] for name, column in self.columns.items()}
+        return _of(kept, self.errors, self.flags)
 
 
 _COLUMNS = (
@@ -80,10 +80,18 @@ _COLUMNS = (
 )
 
 
-def from_curve(curve: Mapping[str, FloatArray]) -> Readings:
-    """Take readings back from the curve of a measurement, where their columns were put."""
-    time_s, viscosity, noise, calibration, speed, rotor, line = (curve[n] for n in _COLUMNS)
-    return Readings(time_s, viscosity, noise, calibration, speed, rotor, line, errors="")
+def joined(runs: Sequence[Readings]) -> Readings:
+    """Put the readings of several runs behind each other."""
+    if len(runs) == 1:
+        return runs[0]
+    columns = [run.columns for run in runs]
+    whole = {name: np.concatenate([c[name] for c in columns]) for name in _COLUMNS}
+    return _of(whole, runs[0].errors, runs[0].flags)
+
+
+def _of(columns: Mapping[str, FloatArray], errors: str, flags: tuple[Flag, ...]) -> Readings:
+    time_s, viscosity, noise, calibration, speed, rotor, line = (columns[n] for n in _COLUMNS)
+    return Readings(time_s, viscosity, noise, calibration, speed, rotor, line, errors, flags)
 
 
 def audited(

@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
 from deamat.core.records import MeasuredValue, Measurement, Recording, Refusal, Specimen
 from deamat.core.technique import Context
-from deamat.techniques.shared.outcome import refusal
+from deamat.techniques.shared.outcome import nothing_measured, refusal
 from deamat.techniques.viscosity.clock import since_mixing_s
 from deamat.techniques.viscosity.config import ALWAYS, ViscosityConfig
 from deamat.techniques.viscosity.flow_curve import flow_curve_values
 from deamat.techniques.viscosity.pooled import fit_law
 from deamat.techniques.viscosity.readings import Readings, audited
+from deamat.techniques.viscosity.result import Run
 from deamat.techniques.viscosity.time_law import TimeLaw
 from deamat.techniques.viscosity.values import asked_of, measured
 from deamat.techniques.viscosity.window import Windowed, windowed
 
 
-def reduce(specimen: Specimen, recording: Recording | None, context: Context) -> Measurement:
+def reduce(
+    specimen: Specimen, recording: Recording | None, context: Context[ViscosityConfig]
+) -> Measurement[Run]:
     """Reduce one run to the values of its law, or one flow curve to K and n.
 
     Parameters
@@ -26,30 +28,27 @@ def reduce(specimen: Specimen, recording: Recording | None, context: Context) ->
         file holds several flow curves
     recording : with `viscosity_Pas` and a time (`time_s`, `utc_s`, `local_clock_s`,
         `time_of_day_s`) or `shear_rate_per_s`
-    context : with a `ViscosityConfig` and the viscometer's limits
+    context : with the viscometer's limits
 
     Source: Sikulskyi et al. 2022, section 3.2 and Table 2, for windows and laws.
     """
-    config: ViscosityConfig = context.config
+    config = context.config
     source = None if recording is None else recording.source
-    curve: dict[str, FloatArray] = {}
+    readings: Readings | None = None
     try:
         if recording is None:
             raise FitRefused("the register names no data file for this run; fill in `file`")
         if "shear_rate_per_s" in recording.columns:
-            values, curve = flow_curve_values(specimen, recording)
-            return Measurement(specimen, values, (), curve, source)
+            values, flow = flow_curve_values(specimen, recording)
+            return Measurement(specimen, values, (), flow, source)
         times = since_mixing_s(specimen, recording, context.timezone)
         readings = audited(recording, times, context.machine, config)
-        curve = readings.columns
         window = windowed(readings, config)
         law = fit_law([window], config)
     except FitRefused as error:
-        return Measurement(
-            specimen, (), tuple(refusal(specimen, key, error, {}) for key in ALWAYS), curve, source
-        )
+        return nothing_measured(specimen, ALWAYS, error, recording, readings)
     values_, refusals = _values(specimen, readings, window, law, config)
-    return Measurement(specimen, values_, refusals, curve, source)
+    return Measurement(specimen, values_, refusals, readings, source)
 
 
 def _values(

@@ -6,28 +6,35 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from deamat.core.errors import FitRefused
-from deamat.core.records import Measurement, Summary
+from deamat.core.records import Measurement, Specimen, Summary
 from deamat.core.technique import Context
 from deamat.techniques.shared.mean import summarise_by_mean
 from deamat.techniques.shared.outcome import refusal
 from deamat.techniques.viscosity.config import ALWAYS, VERSION, VISCOSITY, YIELDS, ViscosityConfig
 from deamat.techniques.viscosity.pooled import fit_runs, laws_of, refuse_mixed_units
-from deamat.techniques.viscosity.readings import from_curve
+from deamat.techniques.viscosity.readings import Readings
+from deamat.techniques.viscosity.result import Run
 from deamat.techniques.viscosity.window import windowed
 
 
-def summarise(measurements: Sequence[Measurement], context: Context) -> Summary:
+def summarise(
+    measurements: Sequence[Measurement[Run]], context: Context[ViscosityConfig]
+) -> Summary:
     """Average the values of the runs, and fit one law to all of them."""
-    config: ViscosityConfig = context.config
+    config = context.config
     summary = summarise_by_mean(measurements, f"viscosity@{VERSION}", YIELDS)
     ordered = sorted(measurements, key=lambda m: (m.specimen.line, m.specimen.id))
-    runs = [m for m in ordered if m.values and "time_s" in m.curve]
+    runs = [
+        (m.specimen, windowed(m.result, config))
+        for m in ordered
+        if m.values and isinstance(m.result, Readings)
+    ]
     if not runs:
         return summary
-    windows = [windowed(from_curve(m.curve), config) for m in runs]
-    specimen = runs[0].specimen
+    specimens, windows = [s for s, _ in runs], [w for _, w in runs]
+    specimen = specimens[0]
     try:
-        refuse_mixed_units({m.specimen.id: w for m, w in zip(runs, windows, strict=True)})
+        refuse_mixed_units({s.id: w for s, w in runs})
     except FitRefused as error:
         mixed = tuple(refusal(specimen, key, error, {}) for key in ALWAYS)
         return Summary((), (), (*summary.refusals, *mixed))
@@ -38,15 +45,15 @@ def summarise(measurements: Sequence[Measurement], context: Context) -> Summary:
         return Summary(summary.records, (), (*summary.refusals, refused))
     origins = next((r.origins for r in summary.records if r.key == VISCOSITY), ())
     method = windows[0].rule
-    law = replace(law, diagnostics={**law.diagnostics, **_temperature(runs)})
+    law = replace(law, diagnostics={**law.diagnostics, **_temperature(specimens)})
     return Summary(
         summary.records, laws_of(law, levels, specimen, method, origins), summary.refusals
     )
 
 
-def _temperature(runs: Sequence[Measurement]) -> dict[str, float]:
+def _temperature(runs: Sequence[Specimen]) -> dict[str, float]:
     """Mean temperature of the runs, where the register tells it of all of them `[K]`."""
-    stated = [m.specimen.numbers[_TEMPERATURE] for m in runs if _TEMPERATURE in m.specimen.numbers]
+    stated = [s.numbers[_TEMPERATURE] for s in runs if _TEMPERATURE in s.numbers]
     if len(stated) < len(runs):
         return {}
     return {_TEMPERATURE: sum(t.value for t in stated) / len(stated)}

@@ -27,6 +27,7 @@ class TimeLaw:
     drift : change of the coefficients for one standard uncertainty of the calibration, shape (p,)
     valid : range of times `[s]`
     rates : range of nominal shear rates `[1/s]`; None for a Newtonian law
+    rate_per_rpm_per_s : nominal shear rate over speed; None for a Newtonian law
     relative_error : root mean square of residual over law
     dof : degrees of freedom of the scatter
     name, reason : of the law chosen, and why
@@ -45,6 +46,7 @@ class TimeLaw:
     reason: str
     diagnostics: Mapping[str, Detail]
     flags: tuple[Flag, ...] = ()
+    rate_per_rpm_per_s: float | None = None
 
     def at(self, time_s: float) -> tuple[float, FloatArray]:
         """Give viscosity and its derivatives by coefficient, at the usual rate if there is one.

@@ -10,7 +10,7 @@ import numpy as np
 from deamat.core.errors import FitRefused
 from deamat.core.records import Flag
 from deamat.techniques.viscosity.config import ViscosityConfig
-from deamat.techniques.viscosity.readings import Readings, from_curve
+from deamat.techniques.viscosity.readings import Readings, joined
 
 _INTERVAL_CHANGE = 2.0  # a sampling interval that grows by more than this is another method
 
@@ -105,10 +105,7 @@ def _enough(chosen: Readings, config: ViscosityConfig, rule: str) -> None:
 
 def combined(windows: Sequence[Windowed]) -> Readings:
     """Put the readings of several runs behind each other."""
-    if len(windows) == 1:
-        return windows[0].readings
-    columns = [w.readings.columns for w in windows]
-    return from_curve({n: np.concatenate([c[n] for c in columns]) for n in columns[0]})
+    return joined([w.readings for w in windows])
 
 
 def common_range(ranges: Sequence[tuple[float, float]]) -> tuple[float, float]:

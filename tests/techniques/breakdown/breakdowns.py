@@ -13,6 +13,7 @@ from deamat.core.records import Measurement, PropertyRecord, Recording, Specimen
 from deamat.core.technique import Context
 from deamat.techniques.breakdown import TECHNIQUE
 from deamat.techniques.breakdown.config import BreakdownConfig
+from deamat.techniques.breakdown.result import FilmTest
 from tests.techniques.curves import recording
 
 STRENGTH, SHAPE, UNBIASED, B10, B1 = TECHNIQUE.yields
@@ -38,14 +39,16 @@ def film(
     )
 
 
-def reduce(specimen: Specimen, file: Recording | None = None, **config: Any) -> Measurement:
+def reduce(
+    specimen: Specimen, file: Recording | None = None, **config: Any
+) -> Measurement[FilmTest]:
     settings = Context(BreakdownConfig(**config), Machine(), {})
     return TECHNIQUE.reduce(specimen, file, settings)
 
 
 def fields(
     values: Sequence[float], unbroken: Sequence[bool] | None = None, **numbers: float
-) -> list[Measurement]:
+) -> list[Measurement[FilmTest]]:
     """Register rows that hold fields `[V/um]`."""
     marks = unbroken or [False] * len(values)
     return [
@@ -59,11 +62,11 @@ def fields(
     ]  # fmt: skip
 
 
-def summarise(measured: Sequence[Measurement], **config: Any) -> Summary:
+def summarise(measured: Sequence[Measurement[FilmTest]], **config: Any) -> Summary:
     return TECHNIQUE.summarise(measured, Context(BreakdownConfig(**config), Machine(), {}))
 
 
-def records(measured: Sequence[Measurement], **config: Any) -> dict[str, PropertyRecord]:
+def records(measured: Sequence[Measurement[FilmTest]], **config: Any) -> dict[str, PropertyRecord]:
     return {r.key: r for r in summarise(measured, **config).records}
 
 

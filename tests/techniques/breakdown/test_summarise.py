@@ -33,6 +33,7 @@ from tests.techniques.breakdown.breakdowns import (
     summarise,
 )
 from tests.techniques.curves import context
+from tests.techniques.drawn import blank, by_label
 
 
 def test_the_fit_is_the_maximum_likelihood_of_both_parameters() -> None:
@@ -131,7 +132,7 @@ def test_right_censored_specimens_stay_in_the_fit() -> None:
         ),
     ],
 )
-def test_samples_that_cannot_be_fitted_are_refused_with_a_mend(
+def test_samples_that_cannot_be_fitted_are_refused_with_a_hint(
     values: list[float], unbroken: list[bool] | None, reason: str
 ) -> None:
     summary = summarise(fields(values, unbroken))
@@ -259,48 +260,32 @@ def test_config_says_what_is_wrong(section: dict[str, Any], message: str) -> Non
         BreakdownConfig(**section)
 
 
-class Axes:
-    """Remembers what was drawn."""
-
-    def __init__(self) -> None:
-        self.lines: dict[str, tuple[Any, Any]] = {}
-        self.band: tuple[Any, Any, Any] | None = None
-        self.said: dict[str, Any] = {}
-
-    def plot(self, x: Any, y: Any, *_: str, label: str, **style: object) -> None:
-        self.lines[label] = (np.asarray(x), np.asarray(y))
-
-    def fill_betweenx(self, y: Any, low: Any, high: Any, **style: object) -> None:
-        self.band = (y, low, high)
-
-    def __getattr__(self, name: str) -> Any:
-        return lambda *args, **_: self.said.setdefault(name, args)
-
-
 def test_the_figure_is_a_weibull_plot_with_line_band_and_unbroken_specimens() -> None:
     marks = [x > 50.0 for x in LAWLESS_I]
     measured = fields([min(x, 50.0) for x in LAWLESS_I], marks)
-    axes = Axes()
+    axes = blank()
     assert TECHNIQUE.figure is not None
     TECHNIQUE.figure(axes, measured, summarise(measured))
-    line = next(v for k, v in axes.lines.items() if k.startswith("fit"))
+    drawn = by_label(axes)
+    line = next(v for k, v in drawn.items() if k.startswith("fit"))
     shape = records(measured)[SHAPE].quantity.value
     slope = np.diff(line[1]) / np.diff(np.log(line[0]))
     assert slope == pytest.approx(np.full(slope.size, shape))
-    broken = axes.lines["broken (n = 16)"]
+    broken = drawn["broken (n = 16)"]
     assert broken[0] == pytest.approx([x for x in LAWLESS_I if x <= 50.0])
-    assert axes.lines["not broken at this field (n = 4)"][0].tolist() == [50.0] * 4
-    assert axes.band is not None
-    assert np.all(axes.band[1] < line[0])
-    assert np.all(axes.band[2] > line[0])
-    assert axes.said["set_xlabel"] == ("electric field [V/um]",)
-    assert axes.said["set_xscale"] == ("log",)
+    assert drawn["not broken at this field (n = 4)"][0].tolist() == [50.0] * 4
+    (band,) = axes.collections
+    low, high = np.split(np.asarray(band.get_paths()[0].vertices)[1:-2], 2)
+    upright = low[:, 1]
+    assert np.all(low[:, 0] < np.interp(upright, line[1], line[0]))
+    assert np.all(high[::-1, 0] > np.interp(upright, line[1], line[0]))
+    assert (axes.get_xlabel(), axes.get_xscale()) == ("electric field [V/um]", "log")
 
 
 def test_a_sample_that_is_refused_still_has_axes() -> None:
     measured = fields([40.0, 41.0], [True, True])
-    axes = Axes()
+    axes = blank()
     assert TECHNIQUE.figure is not None
     TECHNIQUE.figure(axes, measured, summarise(measured))
-    assert list(axes.lines) == ["not broken at this field (n = 2)"]
-    assert axes.said["set_ylabel"] == ("broken [%], as ln(-ln(1 - F))",)
+    assert list(by_label(axes)) == ["not broken at this field (n = 2)"]
+    assert axes.get_ylabel() == "broken [%], as ln(-ln(1 - F))"

@@ -17,6 +17,7 @@ from deamat.core.quantity import Quantity
 from deamat.core.records import Measurement
 from deamat.techniques.compression import TECHNIQUE
 from deamat.techniques.compression.config import CompressionConfig
+from deamat.techniques.shared.modulus import LoadingCurve
 from tests.techniques.curves import (
     CYLINDER,
     EXACT,
@@ -36,12 +37,12 @@ MODULUS, COMPENSATED = TECHNIQUE.yields
 
 def compress(
     stress: FloatArray, strain: FloatArray = STRAIN, machine: Machine = EXACT
-) -> Measurement:
+) -> Measurement[LoadingCurve]:
     columns = {"displacement_m": 0.03 * strain, "force_N": AREA * stress}
     return reduce(TECHNIQUE, CYLINDER, columns, machine)
 
 
-def names(measurement: Measurement) -> list[str]:
+def names(measurement: Measurement[LoadingCurve]) -> list[str]:
     return [flag.name for flag in measurement.values[0].flags]
 
 
@@ -246,7 +247,7 @@ def test_config_says_what_is_wrong(section: dict[str, Any], message: str) -> Non
 @pytest.mark.shared
 def test_each_phantom_comes_out_as_published(shared: Path) -> None:
     folder = shared / "real" / "ecoflex-phantom-2026" / "compression"
-    measured: dict[str, list[Measurement]] = defaultdict(list)
+    measured: dict[str, list[Measurement[LoadingCurve]]] = defaultdict(list)
     for row in expected(shared):
         if row["mode"] != "compression" or "*" in row["file"]:
             continue

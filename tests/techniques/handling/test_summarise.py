@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterable
-from typing import Any
 
 import pytest
 
@@ -14,15 +13,17 @@ from deamat.core.records import Measurement, PropertyRecord, Recording, Summary
 from deamat.core.register import read_register
 from deamat.core.technique import Context
 from deamat.techniques.handling import TECHNIQUE
-from deamat.techniques.handling.config import KEY
+from deamat.techniques.handling.config import KEY, HandlingConfig
+from deamat.techniques.handling.runs import Line
 from deamat.twin.campaign import SEED
 from deamat.twin.handling import ROOM_C, handling_part, true_handling_times
+from tests.techniques.drawn import blank, by_label, spans
 
 HEADER = "material,batch,bed_temperature_C,time_h,line,defect,limit\n"
 NO_FILE: Recording | None = None
 
 
-def measured(text: str, header: str = HEADER, **config: object) -> list[Measurement]:
+def measured(text: str, header: str = HEADER, **config: object) -> list[Measurement[Line]]:
     """Read a register and reduce every row of it."""
     register = read_register(
         (header + text).encode(), "c/handling/observations.csv", "c", "handling",
@@ -31,8 +32,8 @@ def measured(text: str, header: str = HEADER, **config: object) -> list[Measurem
     return [TECHNIQUE.reduce(s, NO_FILE, context(**config)) for s in register.specimens]
 
 
-def context(**config: object) -> Context:
-    return Context(TECHNIQUE.config(**config), Machine(), {})
+def context(**config: object) -> Context[HandlingConfig]:
+    return Context(HandlingConfig.model_validate(config), Machine(), {})
 
 
 def summary(text: str, **config: object) -> Summary:
@@ -96,7 +97,7 @@ def test_every_value_of_table_3_comes_back_from_the_twins_file() -> None:
     ]
 
 
-def _group(one: Measurement) -> tuple[str, float]:
+def _group(one: Measurement[Line]) -> tuple[str, float]:
     temperature = one.specimen.conditions["temperature_K"]
     assert isinstance(temperature, float)
     return one.specimen.material, temperature
@@ -294,44 +295,22 @@ def test_a_time_that_no_silicone_has_is_flagged() -> None:
 # --- the figure
 
 
-class Axes:
-    """Remembers what was drawn."""
-
-    def __init__(self) -> None:
-        self.points: dict[str, list[tuple[float, int]]] = {}
-        self.spans: list[tuple[float, float]] = []
-        self.labels: list[str] = []
-
-    def plot(self, x: Any, y: Any, label: str, **style: object) -> None:
-        self.points[label] = list(zip(x, y, strict=True))
-
-    def axvspan(self, low: float, high: float, **style: object) -> None:
-        self.spans.append((low, high))
-
-    def set_yticks(self, at: Any, labels: list[str]) -> None:
-        self.labels += labels
-
-    def set_xlabel(self, text: str) -> None:
-        self.labels.append(text)
-
-    def set_ylabel(self, text: str) -> None:
-        self.labels.append(text)
-
-
 def test_the_figure_shows_every_line_and_the_interval() -> None:
     assert TECHNIQUE.figure is not None
     text = run("a", (1, 2), (3, "gap", "")) + run("b", (1, 2), (3, "no flow", "torque"))
     rows = measured(text)
-    axes = Axes()
+    axes = blank()
     TECHNIQUE.figure(axes, rows, TECHNIQUE.summarise(rows, context()))
-    assert axes.points == {
+    points = {name: list(zip(*line, strict=True)) for name, line in by_label(axes).items()}
+    assert points == {
         "clean": [(1.0, 0), (2.0, 0), (1.0, 1), (2.0, 1)],
         "defective": [(3.0, 0), (3.0, 1)],
         "equipment limit": [(3.0, 1)],
     }
-    assert axes.spans == [(2.0, 3.0)]
-    assert axes.labels == ["a", "b", "time since mixing [h]", "run"]
-    open_ended = Axes()
+    assert spans(axes) == [(2.0, 3.0)]
+    assert [label.get_text() for label in axes.get_yticklabels()] == ["a", "b"]
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("time since mixing [h]", "run")
+    open_ended = blank()
     rows = measured(run("a", (1, 2)))
     TECHNIQUE.figure(open_ended, rows, TECHNIQUE.summarise(rows, context()))
-    assert open_ended.spans == []
+    assert spans(open_ended) == []

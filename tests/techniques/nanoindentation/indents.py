@@ -14,6 +14,7 @@ from deamat.core.records import Measurement, Recording, Specimen
 from deamat.core.technique import Context
 from deamat.techniques.nanoindentation import TECHNIQUE
 from deamat.techniques.nanoindentation.config import MODULUS
+from deamat.techniques.nanoindentation.result import Indent
 from deamat.twin.nanoindentation import simulate_nanoindentation, tip_of
 from tests.techniques.curves import EXACT, lengths, source
 
@@ -71,12 +72,12 @@ def reduce(
     curve: tuple[FloatArray, FloatArray],
     machine: Machine = EXACT,
     **config: object,
-) -> Measurement:
-    context = Context(TECHNIQUE.config(**config), machine, {})
+) -> Measurement[Indent]:
+    context = Context(TECHNIQUE.config.model_validate(config), machine, {})
     return TECHNIQUE.reduce(specimen(*tip), recording(*curve), context)
 
 
-def twin(seed: int, material: str, number: int) -> tuple[Measurement, float]:
+def twin(seed: int, material: str, number: int) -> tuple[Measurement[Indent], float]:
     """One simulated indentation, reduced without a file, and its specimen's own modulus."""
     test = simulate_nanoindentation(seed, material, number)
     made = Specimen(
@@ -94,11 +95,11 @@ FLAT_CURVE = elastic(*law(MODULUS_Pa, "flat", 50e-6), 1e-6)
 SPHERE_CURVE = elastic(*law(MODULUS_Pa, "spherical", 150e-6), 4e-6)
 
 
-def flags(measurement: Measurement) -> list[str]:
+def flags(measurement: Measurement[Indent]) -> list[str]:
     return [str(flag) for flag in measurement.values[0].flags]
 
 
-def reason(measurement: Measurement) -> str:
+def reason(measurement: Measurement[Indent]) -> str:
     (refusal,) = measurement.refusals
     assert measurement.values == ()
     assert (refusal.key, refusal.material, refusal.specimen) == (MODULUS, "m", "n2")

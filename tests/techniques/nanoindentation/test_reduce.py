@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -22,8 +21,10 @@ from deamat.formats.hysitron import FORMAT
 from deamat.formats.rawfile import RawFile
 from deamat.techniques import TECHNIQUES
 from deamat.techniques.nanoindentation import TECHNIQUE
+from deamat.techniques.nanoindentation.result import Indent
 from deamat.twin.nanoindentation import SPECIMENS, TOO_SOFT, nanoindentation_part, true_modulus
 from tests.conftest import ROOT
+from tests.techniques.drawn import blank, by_label, lines
 from tests.techniques.nanoindentation.indents import (
     BERKOVICH,
     CONTEXT,
@@ -188,7 +189,7 @@ def test_the_files_of_seed_2022_give_the_truth_back_or_are_refused() -> None:
         files["nanoindentation/specimens.csv"], f"{folder}/specimens.csv", "c", TECHNIQUE.key,
         TECHNIQUE.required, config.instruments.gauges, TECHNIQUE.register,
     )  # fmt: skip
-    measured: dict[str, list[Measurement]] = {}
+    measured: dict[str, list[Measurement[Indent]]] = {}
     for row in register.specimens:
         file = RawFile(row.file or "", files[(row.file or "").removeprefix("c/")])
         machine = config.instruments.machine(row.notes["instrument"])[1]
@@ -232,43 +233,24 @@ def test_a_mean_keeps_the_shared_part_whole() -> None:
     assert backwards == record
 
 
-class Axes:
-    """Remembers what was drawn."""
-
-    def __init__(self) -> None:
-        self.lines: list[tuple[Any, Any]] = []
-        self.labels: list[str] = []
-        self.names: list[object] = []
-
-    def plot(self, x: Any, y: Any, **style: object) -> None:
-        self.lines.append((x, y))
-        self.names += [style["label"]] if "label" in style else []
-
-    def set_xlabel(self, text: str) -> None:
-        self.labels.append(text)
-
-    def set_ylabel(self, text: str) -> None:
-        self.labels.append(text)
-
-
 def test_the_figure_shows_curve_and_law_from_contact() -> None:
     assert TECHNIQUE.figure is not None
-    axes = Axes()
+    axes = blank()
     TECHNIQUE.figure(axes, [reduce(SPHERE, SPHERE_CURVE)], Summary(()))
-    (_, load), (depth, fitted) = axes.lines
+    (_, load), (depth, fitted) = lines(axes)
     assert depth[-1] == pytest.approx(4.0, rel=1e-5)
     assert fitted[-1] == pytest.approx(float(load.max()), rel=1e-4)
-    assert axes.labels == ["depth from contact [um]", "load [uN]"]
-    stiff = Axes()
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("depth from contact [um]", "load [uN]")
+    stiff = blank()
     TECHNIQUE.figure(stiff, [reduce(BERKOVICH, pyramid(7e10, 3e-3))], Summary(()))
-    assert len(stiff.lines) == 1
-    refused = Axes()
+    assert len(lines(stiff)) == 1
+    refused = blank()
     bare = reduce(({}, SPHERE[1]), SPHERE_CURVE)
     nothing = TECHNIQUE.reduce(specimen(*SPHERE), None, CONTEXT)
     TECHNIQUE.figure(refused, [bare, nothing], Summary(()))
-    assert refused.lines[0][0] == pytest.approx(1e6 * SPHERE_CURVE[0])
-    assert refused.names == ["n2, refused: as read"]
-    assert stiff.labels[0] == "depth from contact [nm]"
+    assert lines(refused)[0][0] == pytest.approx(1e6 * SPHERE_CURVE[0])
+    assert list(by_label(refused)) == ["n2, refused: as read"]
+    assert stiff.get_xlabel() == "depth from contact [nm]"
 
 
 # --- a real indent

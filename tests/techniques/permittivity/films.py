@@ -16,6 +16,7 @@ from deamat.core.technique import Context
 from deamat.estimators.dielectric.impedance import PAIRS, ComplexArray, shown
 from deamat.techniques.permittivity import TECHNIQUE
 from deamat.techniques.permittivity.config import PermittivityConfig
+from deamat.techniques.permittivity.result import FilmSpectrum
 
 EPS0 = 8.8541878188e-12
 FREQUENCY = np.logspace(1, 4, 31)
@@ -71,34 +72,36 @@ def specimen(**numbers: Quantity | None) -> Specimen:
 
 def context(
     modulus: Quantity | None = MODULUS, machine: Machine | None = None, **config: Any
-) -> Context:
+) -> Context[PermittivityConfig]:
     needs = {} if modulus is None else {"compressive_modulus": modulus}
     return Context(PermittivityConfig(**config), machine or Machine(), needs)
 
 
 def reduce(
-    record: Recording | None, ctx: Context | None = None, **numbers: Quantity | None
-) -> Measurement:
+    record: Recording | None,
+    ctx: Context[PermittivityConfig] | None = None,
+    **numbers: Quantity | None,
+) -> Measurement[FilmSpectrum]:
     return TECHNIQUE.reduce(specimen(**numbers), record, ctx or context())
 
 
-def card(measurement: Measurement) -> tuple[float, float]:
+def card(measurement: Measurement[FilmSpectrum]) -> tuple[float, float]:
     eps, loss = measurement.values
     assert (eps.key, loss.key) == ("relative_permittivity", "loss_tangent")
     return eps.quantity.value, loss.quantity.value
 
 
-def refused(measurement: Measurement) -> str:
+def refused(measurement: Measurement[FilmSpectrum]) -> str:
     assert measurement.values == ()
     assert [r.key for r in measurement.refusals] == ["relative_permittivity", "loss_tangent"]
     assert len({r.reason for r in measurement.refusals}) == 1
     return measurement.refusals[0].reason
 
 
-def flag(measurement: Measurement, name: str, value: int = 0) -> str:
+def flag(measurement: Measurement[FilmSpectrum], name: str, value: int = 0) -> str:
     (found,) = (f.detail for f in measurement.values[value].flags if f.name == name)
     return found
 
 
-def names(measurement: Measurement, value: int = 0) -> list[str]:
+def names(measurement: Measurement[FilmSpectrum], value: int = 0) -> list[str]:
     return [f.name for f in measurement.values[value].flags]

@@ -13,7 +13,7 @@ from deamat.core.properties import REFERENCE_AGE
 from deamat.core.quantity import Quantity
 from deamat.core.records import PropertyRecord, Recording, Source, Specimen
 from deamat.core.register import read_register
-from deamat.core.technique import Context, Technique
+from deamat.core.technique import AnyTechnique, Context
 from deamat.estimators.dielectric.impedance import loss_tangent
 from deamat.formats.detect import detect
 from deamat.formats.rawfile import RawFile
@@ -38,7 +38,7 @@ KEY = "relative_permittivity"
 
 
 def records(
-    technique: Technique, files: dict[str, bytes], needs: dict[str, dict[str, Quantity]]
+    technique: AnyTechnique, files: dict[str, bytes], needs: dict[str, dict[str, Quantity]]
 ) -> dict[str, list[PropertyRecord]]:
     """Read, reduce and summarise one technique's files as the driver does."""
     path = f"{technique.key}/specimens.csv"

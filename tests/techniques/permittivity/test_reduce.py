@@ -20,6 +20,7 @@ from deamat.estimators.dielectric.impedance import PAIRS
 from deamat.estimators.dielectric.squeeze import squeezed_stretch
 from deamat.techniques.permittivity import TECHNIQUE
 from deamat.techniques.permittivity.config import PermittivityConfig
+from deamat.techniques.permittivity.result import FilmSpectrum
 from tests.techniques.permittivity.films import (
     EPS0,
     FREQUENCY,
@@ -228,11 +229,11 @@ def test_an_unknown_edge_is_an_error_of_the_configuration(tmp_path: Any) -> None
 # --- the material
 
 
-def summarised(measurements: list[Measurement], **config: Any) -> PropertyRecord:
+def summarised(measurements: list[Measurement[FilmSpectrum]], **config: Any) -> PropertyRecord:
     return TECHNIQUE.summarise(measurements, context(**config)).records[0]
 
 
-def dispersive(fall: float, factor: float = 1.0) -> Measurement:
+def dispersive(fall: float, factor: float = 1.0) -> Measurement[FilmSpectrum]:
     """Falls linearly in log f by `fall` from 10 Hz to 10 kHz."""
     c = capacitor(2.63 * factor) * (1 - fall * (np.log10(FREQUENCY) - 1) / 3)
     checked = Machine(impedance=LcrAccuracy(high_impedance_per_ohm=((1e6, 0.01e-9),)))

@@ -39,7 +39,7 @@ def measurement(
     who: Specimen = specimen("compression", numbers, name, line, {"age": "after cure"})
     if value is None:
         refusal = Refusal(KEY, "too few samples", "m", "c", name)
-        return Measurement(who, (), (refusal,), {}, source(100))
+        return Measurement(who, (), (refusal,), None, source(100))
     budget = (
         Contribution("scatter about the line, autocorrelated", 0.02 * value, shared=False),
         Contribution("load cell calibration", shared * value, shared=True),
@@ -55,7 +55,7 @@ def measurement(
         {"samples": 91},
         flags,
     )
-    return Measurement(who, (measured,), (), {}, source(100))
+    return Measurement(who, (measured,), (), None, source(100))
 
 
 def summary(*measurements: Measurement) -> Summary:

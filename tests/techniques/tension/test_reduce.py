@@ -11,6 +11,7 @@ from deamat.core.arrays import FloatArray
 from deamat.core.instruments import Machine
 from deamat.core.quantity import Quantity
 from deamat.core.records import MeasuredValue, Measurement
+from deamat.techniques.shared.modulus import LoadingCurve
 from deamat.techniques.tension import TECHNIQUE
 from tests.techniques.curves import EXACT, STRIP, context, expected, lengths, reduce, soro, specimen
 
@@ -19,12 +20,14 @@ STRESS = 5e5 * STRAIN
 AREA, GAUGE = 18e-6, 33e-3
 
 
-def pull(strain: FloatArray, stress: FloatArray, machine: Machine = EXACT) -> Measurement:
+def pull(
+    strain: FloatArray, stress: FloatArray, machine: Machine = EXACT
+) -> Measurement[LoadingCurve]:
     columns = {"displacement_m": GAUGE * strain, "force_N": AREA * stress}
     return reduce(TECHNIQUE, STRIP, columns, machine)
 
 
-def by_key(measured: Measurement) -> dict[str, MeasuredValue]:
+def by_key(measured: Measurement[LoadingCurve]) -> dict[str, MeasuredValue]:
     return {value.key: value for value in measured.values}
 
 

@@ -13,6 +13,7 @@ from deamat.core.technique import Context
 from deamat.core.viscometer import full_scale_Pas
 from deamat.techniques import viscosity
 from deamat.techniques.viscosity.config import ViscosityConfig
+from deamat.techniques.viscosity.result import Run
 
 HOUR = 3600.0
 MACHINE = Machine(u_torque_calibration=0.0025, torque_noise=0.003)
@@ -54,6 +55,9 @@ def newtonian(
 
 
 def reduce(
-    columns: Mapping[str, FloatArray], context: Context = CONTEXT, number: int = 1, **notes: str
-) -> Measurement:
+    columns: Mapping[str, FloatArray],
+    context: Context[ViscosityConfig] = CONTEXT,
+    number: int = 1,
+    **notes: str,
+) -> Measurement[Run]:
     return viscosity.TECHNIQUE.reduce(specimen(number, **notes), recording(columns), context)

@@ -18,6 +18,7 @@ from deamat.formats.rawfile import RawFile
 from deamat.techniques import viscosity
 from deamat.techniques.viscosity.config import RateFactor, ViscosityConfig
 from deamat.techniques.viscosity.flow_curve import NEWTONIAN, POWER_LAW, fit_flow_curve
+from deamat.techniques.viscosity.result import Run
 from tests.techniques.viscosity.runs import CONTEXT, HOUR, recording, reduce, specimen
 
 SPEEDS = np.array([0.3, 0.6, 1.5])
@@ -48,7 +49,7 @@ def swept(
     }
 
 
-def values(measured: Measurement) -> dict[tuple[str, object], float]:
+def values(measured: Measurement[Run]) -> dict[tuple[str, object], float]:
     return {(v.key, v.conditions["time_s"]): v.quantity.value for v in measured.values}
 
 

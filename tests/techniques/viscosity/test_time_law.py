@@ -18,6 +18,7 @@ from deamat.formats.detect import detect
 from deamat.formats.rawfile import RawFile
 from deamat.techniques import viscosity
 from deamat.techniques.viscosity.config import ViscosityConfig
+from deamat.techniques.viscosity.result import Run
 from deamat.techniques.viscosity.time_law import drift_of
 from tests.techniques.viscosity.runs import (
     CONTEXT,
@@ -36,7 +37,7 @@ def line(time_s: FloatArray) -> FloatArray:
     return 4.0 + 0.19 * time_s / HOUR
 
 
-def value(measurement: Measurement, key: str, time_h: float = 1.0) -> float:
+def value(measurement: Measurement[Run], key: str, time_h: float = 1.0) -> float:
     found = [
         v.quantity.value
         for v in measurement.values
@@ -46,11 +47,11 @@ def value(measurement: Measurement, key: str, time_h: float = 1.0) -> float:
     return found[0]
 
 
-def law_of(measurement: Measurement) -> Law:
+def law_of(measurement: Measurement[Run]) -> Law:
     return viscosity.TECHNIQUE.summarise([measurement], CONTEXT).laws[0]
 
 
-def flag_names(measurement: Measurement) -> set[str]:
+def flag_names(measurement: Measurement[Run]) -> set[str]:
     return {flag.name for v in measurement.values for flag in v.flags}
 
 
@@ -114,7 +115,7 @@ def test_the_smallest_polynomial_that_the_data_support_is_found(
     assert str(law.diagnostics["choice"]) in law.method
 
 
-def _wide_open() -> Context:
+def _wide_open() -> Context[ViscosityConfig]:
     return replace(CONTEXT, config=ViscosityConfig(torque_window=(0.0, 1.0)))
 
 
@@ -358,7 +359,7 @@ def test_every_curing_resin_is_answered_or_refused_with_a_reason(shared: Path) -
     assert refused == ["resin-13", "resin-21", "resin-63"]
 
 
-def _resin(row: Specimen, folder: Path, context: Context) -> Measurement:
+def _resin(row: Specimen, folder: Path, context: Context[ViscosityConfig]) -> Measurement[Run]:
     path = folder / "curves" / str(row.file).rpartition("/")[2]
     file = RawFile(path.name, path.read_bytes())
     return viscosity.TECHNIQUE.reduce(row, detect(file).read(file), context)
