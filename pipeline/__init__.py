@@ -52,8 +52,8 @@ _HOMES = {
     "deamat.actuator.stack": ("Layer", "Stack"),
     "deamat.actuator.strain": ("pull_in_voltage",),
     "deamat.core.errors": (
-        *("ConfigError", "FitRefused", "MissingProperty", "OutOfRange", "PipelineError"),
-        "RawFileError",
+        *("CardError", "ConfigError", "FitRefused", "MissingProperty", "OutOfRange"),
+        *("PipelineError", "RawFileError"),
     ),
     "deamat.core.properties": ("CONDITIONS", "PROPERTIES"),
     "deamat.core.quantity": ("Quantity",),
@@ -64,7 +64,6 @@ _HOMES = {
     "deamat.materials.database": (
         *("Database", "DatabaseError", "MissingMaterial", "open_database"),
     ),
-    "deamat.materials.document": ("CardError",),
     "deamat.materials.frame": ("to_frame",),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import click
 
 from deamat import __version__
-from deamat.core.errors import ConfigError, PipelineError
+from deamat.core.errors import PipelineError, RawFileError
 from deamat.run.folders import Folders
 
 WELL, REJECTED, WRONG = 0, 1, 2
@@ -301,9 +301,6 @@ def main() -> None:
     """Run the command; a mistake in usage or configuration ends with code 2 and a sentence."""
     try:
         cli()
-    except ConfigError as error:
-        click.echo(f"deamat: {error}", err=True)
-        sys.exit(WRONG)
     except PipelineError as error:
         click.echo(f"deamat: {error}", err=True)
-        sys.exit(REJECTED if error.__class__.__name__ == "RawFileError" else WRONG)
+        sys.exit(REJECTED if isinstance(error, RawFileError) else WRONG)

@@ -81,10 +81,21 @@ class FitRefused(PipelineError):
 
 
 class MissingProperty(PipelineError, KeyError):
-    """A card has no such property, or several that the question does not tell apart."""
+    """A card has no such property, or several that the question does not tell apart.
+
+    Parameters
+    ----------
+    reason : what is missing, and why
+    hint : what there is instead
+    """
+
+    def __init__(self, reason: str, hint: str = "") -> None:
+        super().__init__(reason, hint)
+        self.reason = reason
+        self.hint = hint
 
     def __str__(self) -> str:
-        return str(self.args[0])
+        return f"{self.reason}; {self.hint}" if self.hint else self.reason
 
 
 class OutOfRange(PipelineError, ValueError):

@@ -130,8 +130,8 @@ class MaterialCard:
         found = [r for r in self.records if r.key == key]
         if not found:
             law = any(entry.key == key for entry in self.laws)
-            hint = f"; it has a law, ask for card.law({key!r})" if law else ""
-            raise MissingProperty(self._lacks(key) + hint + _there(self.records))
+            hint = f"it has a law, ask for card.law({key!r}); " if law else ""
+            raise MissingProperty(self._lacks(key), hint + _there(self.records))
         return choose(found, f"{key} of {self.material}", conditions)
 
     def law(self, key: str, **conditions: Condition | None) -> Law:
@@ -143,7 +143,7 @@ class MaterialCard:
         """
         found = [law for law in self.laws if law.key == key]
         if not found:
-            raise MissingProperty(self._lacks(f"law of {key}", key) + _there(self.laws))
+            raise MissingProperty(self._lacks(f"law of {key}", key), _there(self.laws))
         return choose(found, f"law of {key} of {self.material}", conditions)
 
     def _lacks(self, what: str, key: str | None = None) -> str:
@@ -239,7 +239,7 @@ def _digest(document: Mapping[str, Any]) -> str:
 
 
 def _there(entries: Sequence[PropertyRecord | Law]) -> str:
-    return f"; there is {', '.join(sorted({e.key for e in entries})) or 'nothing'}"
+    return f"there is {', '.join(sorted({e.key for e in entries})) or 'nothing'}"
 
 
 def _identity(entry: PropertyRecord | Law) -> tuple[str, str, str]:

@@ -38,7 +38,7 @@ def choose(entries: Sequence[E], what: str, asked: Asked) -> E:
         )
     left = [e for e in entries if all(_meets(e, name, asked[name]) for name in asked)]
     if not left:
-        raise MissingProperty(f"no {what} with {_said(asked)}; there is {_choices(entries)}")
+        raise MissingProperty(f"no {what} with {_said(asked)}", f"there is {_choices(entries)}")
     if len(left) > 1 and "age" not in asked:
         left = [e for e in left if _stated(e, "age") == REFERENCE_AGE] or left
     if len(left) > 1:

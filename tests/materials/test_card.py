@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import json
 import math
+import pickle
 from dataclasses import replace
 from pathlib import Path
 
@@ -42,6 +43,17 @@ def test_none_asks_for_a_record_without_the_condition() -> None:
     plain = modulus(conditions={})
     both = card(records=(plain, modulus(conditions={"age": "2 months"})))
     assert both.record("compressive_modulus", age=None) == plain
+
+
+def test_what_is_missing_is_told_apart_from_what_there_is_instead() -> None:
+    with pytest.raises(MissingProperty) as caught:
+        card().record("viscosity")
+    error = pickle.loads(pickle.dumps(caught.value))  # as a worker process hands it on
+    assert error.reason == "gel-a has no viscosity"
+    assert error.hint == (
+        "it has a law, ask for card.law('viscosity'); there is compressive_modulus, handling_time"
+    )
+    assert str(error) == f"{error.reason}; {error.hint}"
 
 
 def test_several_records_at_the_reference_age_are_refused_with_the_choices() -> None:

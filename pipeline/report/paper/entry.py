@@ -24,6 +24,9 @@ class Entry:
     standard_uncertainty : of the recomputed number; None where it is not known
     note : where the number comes from, or why there is none
     synthetic : it rests on simulated data
+    campaign : the one that it comes from; empty where it comes from none
+    missing : the database does not hold what it would be recomputed from
+    lower_bound : what was recomputed is only known to be exceeded
     """
 
     id: str
@@ -33,6 +36,9 @@ class Entry:
     standard_uncertainty: float | None
     note: str
     synthetic: bool = False
+    campaign: str = ""
+    missing: bool = False
+    lower_bound: bool = False
 
     @property
     def relative_difference(self) -> float | None:
@@ -67,7 +73,7 @@ def to_json(entries: Iterable[Entry]) -> bytes:
             "recomputed": _short(e.recomputed),
             "unit": e.unit,
             "standard_uncertainty": _short(e.standard_uncertainty),
-            "note": e.note,
+            "note": f"not recomputed: {e.note}" if e.missing else e.note,
         }
         for e in entries
     ]

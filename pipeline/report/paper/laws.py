@@ -89,8 +89,7 @@ def hours_of(law: Law) -> tuple[float, float]:
 
 def rates_of(law: Law) -> tuple[float, float] | None:
     """Give the shear rates between which a power-law fluid is known `[1/s]`; else None."""
-    rates: tuple[float, float] | None = getattr(law, "rates", None)
-    return rates if law.kind == FLUID else None
+    return law.rates if law.kind == FLUID else None
 
 
 def rate_for(law: Law | None) -> float:
@@ -175,6 +174,7 @@ def _curve(database: Database, material: str) -> Entry:
             f"{round(100 * off[at], 1) + 0.0:+.1f} %, at {hours[at]:.2f} h; {how}{law.kind} law; "
             f"{provenance(card, law)}",
             is_synthetic(card, law.campaign),
+            law.campaign,
         )
 
     found = ask(database, material, question)
@@ -233,7 +233,7 @@ def _beside(
                     place, number, float(values[i]), printed.unit(place), float(u[i]) or None,
                     f"{how}{provenance(card, law)}; coefficients of a polynomial are correlated, "
                     "the row of the curve says how far the laws differ",
-                    is_synthetic(card, law.campaign),
+                    is_synthetic(card, law.campaign), law.campaign,
                 )
             )  # fmt: skip
     return entries

@@ -25,9 +25,7 @@ def ask(database: Database, material: str, question: Callable[[MaterialCard], T]
     try:
         return question(database[material])
     except MissingProperty as error:
-        return str(error).partition("; there is ")[
-            0
-        ]  # what else the card holds is beside the point
+        return error.reason  # what else the card holds is beside the point
 
 
 def is_synthetic(card: MaterialCard, campaign: str) -> bool:
@@ -44,9 +42,7 @@ def provenance(card: MaterialCard, found: PropertyRecord | Law) -> str:
 
 def missing(path: str, why: str) -> Entry:
     """Make the row of a number that the database does not have."""
-    return Entry(
-        path, _printed_or_none(path), None, printed.unit(path), None, f"not recomputed: {why}"
-    )
+    return Entry(path, _printed_or_none(path), None, printed.unit(path), None, why, missing=True)
 
 
 def _printed_or_none(path: str) -> float | None:
@@ -85,6 +81,8 @@ def of_record(path: str, card: MaterialCard, record: PropertyRecord) -> Entry:
         u or None,
         f"{provenance(card, record)}; n = {record.n}, {_interval(record.ci95, unit, u)}",
         is_synthetic(card, record.campaign),
+        record.campaign,
+        lower_bound=math.isinf(record.ci95[1]),
     )
 
 

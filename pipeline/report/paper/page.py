@@ -61,6 +61,7 @@ class Cell:
     state : `good`, `far`, `missing` or `input`; its colour
     note : shown when the reader asks for it
     corrected : the recomputed number with the right sign of Eq. 4, where it changes it
+    lower_bound : the recomputed number is only known to be exceeded
     """
 
     printed: str
@@ -69,6 +70,7 @@ class Cell:
     state: str
     note: str
     corrected: str = ""
+    lower_bound: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,10 +111,9 @@ def plain(value: float | None) -> str:
 def cell(entry: Entry, corrected: Entry | None = None) -> Cell:
     """Lay one entry out."""
     if entry.recomputed is None:
-        why = entry.note.removeprefix("not recomputed: ")
-        state = "missing" if entry.note != why else "input"
-        said = "not in the database" if state == "missing" else ""
-        return Cell(plain(entry.printed), said, "", state, why)
+        state = "missing" if entry.missing else "input"
+        said = "not in the database" if entry.missing else ""
+        return Cell(plain(entry.printed), said, "", state, entry.note)
     state, difference = _difference(entry)
     observed = entry.id.startswith("table3.")  # a time that was written down, not computed
     return Cell(
@@ -124,6 +125,7 @@ def cell(entry: Entry, corrected: Entry | None = None) -> Cell:
         state,
         entry.note,
         "" if corrected is None else digits(corrected.recomputed),
+        entry.lower_bound,
     )
 
 
@@ -175,7 +177,7 @@ def render(
     )
     page = environment.get_template("page.html.j2").render(
         source=printed.part("source"),
-        synthetic=sorted({_campaign(e) for e in entries.values() if e.synthetic}),
+        synthetic=sorted({e.campaign for e in entries.values() if e.synthetic}),
         marked={e.id.partition(".")[0] for e in entries.values() if e.synthetic},
         reasons={table: _why_missing(entries, table) for table in _LOOKED_UP},
         counts=_counts(entries),
@@ -193,10 +195,6 @@ def render(
         },
     )
     return page.encode()
-
-
-def _campaign(entry: Entry) -> str:
-    return entry.note.partition("campaign ")[2].partition(";")[0]
 
 
 def _counts(entries: Mapping[str, Entry]) -> dict[str, int]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 from deamat.core.present import readable_record
 from deamat.core.properties import REFERENCE_AGE
@@ -89,11 +90,8 @@ def _handling(database: Database, name: str) -> Entry:
         return missing(path, found)
     if printed.part(f"table3.{name}").keys() >= {"right_censored"}:
         why = printed.part(f"table3.{name}.why")
-        return Entry(
-            *(found.id, found.printed, found.recomputed, found.unit, None),
-            f"printed as a lower bound ({why}); {found.note}",
-            found.synthetic,
-        )
+        note = f"printed as a lower bound ({why}); {found.note}"
+        return replace(found, standard_uncertainty=None, note=note)
     return found
 
 

@@ -49,10 +49,12 @@ def test_the_curves_are_held_together_where_they_differ_most(found: dict[str, En
 def test_a_law_of_another_form_and_no_law_say_so(found: dict[str, Entry]) -> None:
     other = found["table2.sylgard-184-10to1.coefficients_low_to_high.0"]
     assert other.recomputed is None
-    assert other.note == "not recomputed: the data support a law of another form: exponential"
+    assert other.missing
+    assert other.note == "the data support a law of another form: exponential"
     none = found["table2.sylgard-184-40to1"]
     assert none.recomputed is None
-    assert none.note == "not recomputed: the database has no material sylgard-184-40to1"
+    assert none.missing
+    assert none.note == "the database has no material sylgard-184-40to1"
 
 
 def fluid(tmp_path: Path, index: list[float]) -> Database:
