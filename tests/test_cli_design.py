@@ -14,7 +14,7 @@ from deamat.materials.database import DATABASE_FILE, write_database
 from tests.actuator.cards import ROOT, cards
 
 WANTED = ("--de", "soft", "--passive", "stiff", "--electrode", "pedot-triton")
-CODE = Provenance("0", "0" * 24, (), ())
+CODE = Provenance("0", "0" * 24, (), (), ())
 
 
 @pytest.fixture(scope="module")

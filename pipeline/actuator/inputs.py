@@ -48,7 +48,7 @@ class Input:
     @property
     def u(self) -> float:
         """Combined standard uncertainty `[unit]`."""
-        return math.sqrt(sum(c.u**2 for c in self.budget))
+        return math.sqrt(math.fsum(c.u**2 for c in self.budget))
 
     @property
     def concerns_breakdown(self) -> bool:

@@ -271,16 +271,16 @@ def _merit(actuator: Actuator, rung: Rung) -> float:
     s = film_drive(actuator.voltage_V, film.thickness_m, film.modulus_Pa, permittivity, where)
     strain = in_plane_strain(s, poisson_ratio, actuator.in_plane)
     if rung == "planar":
-        total = sum(layer.thickness_m for layer in (passive, *films))
+        total = math.fsum(layer.thickness_m for layer in (passive, *films))
         return float(1.5 * strain / total)
     count = max(len(electrodes), 1)
     unimorph = Unimorph(
         passive_thickness_m=passive.thickness_m,
         passive_modulus_Pa=passive.modulus_Pa,
-        active_thickness_m=sum(layer.thickness_m for layer in films),
+        active_thickness_m=math.fsum(layer.thickness_m for layer in films),
         active_modulus_Pa=film.modulus_Pa,
-        electrode_thickness_m=sum(layer.thickness_m for layer in electrodes) / count,
-        electrode_modulus_Pa=sum(layer.modulus_Pa for layer in electrodes) / count,
+        electrode_thickness_m=math.fsum(layer.thickness_m for layer in electrodes) / count,
+        electrode_modulus_Pa=math.fsum(layer.modulus_Pa for layer in electrodes) / count,
     )
     merit = no_electrodes if rung == "no electrodes" else single_layer
     return float(merit(unimorph, strain))

@@ -129,7 +129,7 @@ def combined(inputs: Sequence[Input], gradient: FloatArray | Sequence[float]) ->
     for x, slope in zip(inputs, gradient, strict=True):
         for c in x.budget:
             totals[c.source] = totals.get(c.source, 0.0) + slope * c.u
-    return math.sqrt(sum(total**2 for total in totals.values()))
+    return math.sqrt(math.fsum(total**2 for total in totals.values()))
 
 
 def monte_carlo(

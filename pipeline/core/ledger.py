@@ -42,17 +42,19 @@ class FileEntry:
 
 @dataclass(frozen=True, slots=True)
 class Provenance:
-    """Which code and configuration made a release.
+    """What made a release. It stands beside the contents and is no part of them.
 
     Parameters
     ----------
     version : of the distribution
     code : digest of the package's sources
-    stages : name to declared version of every reader and technique (`reader:mark10` to 1)
+    stages : name (`measurement compression`) to fingerprint of the code that ran it
+    environment : Python, platform, and each library that computed, to its version
     config : file name to sha256 of the configuration files
     """
 
     version: str
     code: str
-    stages: tuple[tuple[str, int], ...]
+    stages: tuple[tuple[str, str], ...]
+    environment: tuple[tuple[str, str], ...]
     config: tuple[tuple[str, str], ...]

@@ -92,6 +92,6 @@ class Quantity:
         return cls(
             value,
             unit,
-            math.sqrt(sum(c.u**2 for c in lines if not c.shared)),
-            math.sqrt(sum(c.u**2 for c in lines if c.shared)),
+            math.sqrt(math.fsum(c.u**2 for c in lines if not c.shared)),
+            math.sqrt(math.fsum(c.u**2 for c in lines if c.shared)),
         )

@@ -10,6 +10,7 @@ one piece of each dataset. There are no groups and no time stamps: equal content
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -201,3 +202,14 @@ def _pieces(file: Any, name: str, chosen: NDArray[np.bool_]) -> tuple[FloatArray
     values = file[name][offsets[first] : offsets[last + 1]]
     here = slice(first, last + 1)
     return values[np.repeat(chosen[here], lengths[here])], lengths[chosen]
+
+
+def curves_digest(path: Path) -> str:
+    """Hash what a file of curves holds, whichever version of HDF5 laid it out."""
+    digest = hashlib.sha256()
+    with h5py.File(path, "r") as file:
+        for name in sorted(file):
+            data, about = file[name][:], sorted(file[name].attrs.items())
+            digest.update(f"{name} {data.dtype.str} {data.shape} {about}\n".encode())
+            digest.update(data.tobytes())
+    return digest.hexdigest()

@@ -91,7 +91,7 @@ def write_database(
     path : the file to make; one that is there is unlinked first, never written into
     cards : one for each material
     files : the account of every file under `raw/`
-    provenance : code and configuration that made the cards
+    provenance : what made the cards
 
     Raises
     ------
@@ -221,13 +221,12 @@ class Database(Mapping[str, MaterialCard]):
         return tuple(FileEntry(*row) for row in self._rows("SELECT * FROM files ORDER BY path"))
 
     def provenance(self) -> Provenance:
-        """Say which code and configuration made this release."""
-        version, code, stages, config = self._rows(
-            "SELECT version, code, stages, config FROM release"
+        """Say which code, environment and configuration made this release."""
+        version, code, *told = self._rows(
+            "SELECT version, code, stages, environment, config FROM release"
         )[0]
-        return Provenance(
-            version, code, tuple(json.loads(stages).items()), tuple(json.loads(config).items())
-        )
+        stages, environment, config = (tuple(json.loads(cell).items()) for cell in told)
+        return Provenance(version, code, stages, environment, config)
 
     def curves(self, material: str, technique: str | None = None) -> xarray.Dataset:
         """Read the reduced curves of one material from `curves.h5` beside the database.

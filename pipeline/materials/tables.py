@@ -25,7 +25,7 @@ _LEDGER = """
 CREATE TABLE release (
     id INTEGER PRIMARY KEY CHECK (id = 1),
     version TEXT NOT NULL, code TEXT NOT NULL,
-    stages TEXT NOT NULL, config TEXT NOT NULL
+    stages TEXT NOT NULL, environment TEXT NOT NULL, config TEXT NOT NULL
 ) STRICT;
 CREATE TABLE files (
     path TEXT PRIMARY KEY, sha256 TEXT NOT NULL, size INTEGER NOT NULL, role TEXT NOT NULL,
@@ -96,10 +96,8 @@ VERSION = int.from_bytes(hashlib.sha256(TABLES.encode()).digest()[:4]) >> 1
 
 def provenance_rows(provenance: Provenance) -> list[Row]:
     """Give the one row of `release`."""
-    stages, config = dict(provenance.stages), dict(provenance.config)
-    return [
-        (1, provenance.version, provenance.code, canonical_json(stages), canonical_json(config))
-    ]
+    told = (provenance.stages, provenance.environment, provenance.config)
+    return [(1, provenance.version, provenance.code, *(canonical_json(dict(t)) for t in told))]
 
 
 def file_rows(files: Iterable[FileEntry]) -> list[Row]:

@@ -40,7 +40,7 @@ class Trace:
     key : property key
     entry : the record, or the law where there is no record; None if the key was only refused
     refusals : of this key
-    provenance : code and configuration of the release
+    provenance : what made the release
     """
 
     card: MaterialCard
@@ -89,7 +89,7 @@ def trace(db: Database, material: str, key: str, **conditions: Condition | None)
 
 def percent_of_variance(budget: Sequence[Contribution]) -> list[float]:
     """Give each contribution's part of the combined variance in percent."""
-    total = sum(c.u**2 for c in budget)
+    total = math.fsum(c.u**2 for c in budget)
     return [100.0 * c.u**2 / total if total else 0.0 for c in budget]
 
 
@@ -131,6 +131,7 @@ def _document(trace: Trace) -> Document:
         "refused": [{**document_of(r), "places": _refusal_places(r, card)} for r in trace.refusals],
         "code": {"version": provenance.version, "digest": provenance.code},
         "stages": dict(provenance.stages),
+        "environment": dict(provenance.environment),
         "config": dict(provenance.config),
     }
 
@@ -166,7 +167,7 @@ def _lines(trace: Trace) -> Iterator[str]:
         for origin in entry.origins:
             yield from _origin_lines(origin, entry)
     yield from ("", "Made by")
-    yield from aligned(list(_code_facts(trace.provenance)), "  ")
+    yield from aligned(list(_code_facts(trace)), "  ")
 
 
 def _facts(entry: Entry, card: MaterialCard) -> Iterator[tuple[str, str]]:
@@ -251,8 +252,17 @@ def _refusal_lines(refusal: Refusal, card: MaterialCard) -> Iterator[str]:
         yield from aligned(facts, "    ")
 
 
-def _code_facts(provenance: Provenance) -> Iterator[tuple[str, str]]:
+def _code_facts(trace: Trace) -> Iterator[tuple[str, str]]:
+    provenance = trace.provenance
     yield "code", f"deamat {provenance.version}, digest {provenance.code}"
+    origins = trace.entry.origins if trace.entry else ()
+    techniques = sorted({o.technique.partition("@")[0] for o in origins})
+    made = [f"{stage} {t}" for t in techniques for stage in ("measurement", "summary")]
+    fingerprints = dict(provenance.stages)
+    for stage in (*made, "card"):
+        if stage in fingerprints:
+            yield stage, f"fingerprint {fingerprints[stage]}"
+    yield "with", ", ".join(f"{name} {version}" for name, version in provenance.environment)
     for file, sha256 in provenance.config:
         yield "config", f"{file}, sha256 {sha256}"
 

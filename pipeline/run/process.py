@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import platform
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
@@ -13,13 +14,14 @@ from deamat.core.config import Config, load_config
 from deamat.core.errors import ConfigError
 from deamat.core.ledger import FileEntry, Provenance
 from deamat.run.book import Book, key_of
+from deamat.run.contents import contents_id
 from deamat.run.describe import describe
 from deamat.run.folders import Folders, Stat, locate
 from deamat.run.measure import Bench, Group, Measured, Progress, in_order, measure, summarise
 from deamat.run.publish import publish
 from deamat.run.published import listing
 from deamat.run.release import Release
-from deamat.run.stages import find_stages
+from deamat.run.stages import Stages, find_stages
 from deamat.run.state import State
 from deamat.run.survey import Survey, survey
 from deamat.run.workers import Workers
@@ -76,7 +78,7 @@ def process(
             measured += mine
             groups += summarise(technique, mine, bench)
         files = _account(surveys, measured)
-        provenance = _provenance(config, seen, hashes)
+        provenance = _provenance(config, stages, hashes)
         if dry:
             publish(groups, files, provenance, bench, None)
             book.close()
@@ -85,9 +87,9 @@ def process(
         release = Release(folders.processed, state.read_note("published"))
         publish(groups, files, provenance, bench, release)
         book.close()
-        name = key_of({s: k for s, (k, _) in _all_made(state).items()})[:12]
+        name = contents_id(release.building)
         place = release.publish(name)
-    document = describe(folders, config, surveys, groups, files, left_alone, book, place.name)
+    document = describe(folders, config, surveys, groups, files, left_alone, book, name)
     state.remember_inputs(seen, hashes)
     state.note("published", listing(place))
     return document
@@ -136,15 +138,17 @@ def _account(surveys: list[Survey], measured: list[Measured]) -> list[FileEntry]
     return [entries[path] for path in sorted(entries)]
 
 
-def _provenance(config: Config, seen: Mapping[str, Stat], hashes: Mapping[str, str]) -> Provenance:
-    code = {path: hashes[path] for path in seen if path.startswith("code/")}
-    stages = {f"technique:{t.key}": t.version for t in TECHNIQUES.values()}
+def _provenance(config: Config, stages: Stages, hashes: Mapping[str, str]) -> Provenance:
+    code = {path: sha for path, sha in hashes.items() if path.startswith("code/")}
+    environment = {
+        "Python": platform.python_version(),
+        "platform": f"{platform.system()} {platform.machine()}",
+        **stages.libraries(),
+    }
     return Provenance(
-        __version__, key_of(code), tuple(sorted(stages.items())),
-        tuple(sorted(config.files.items())),
-    )  # fmt: skip
-
-
-def _all_made(state: State) -> dict[str, tuple[str, dict[str, str]]]:
-    stages = ("card", "figure", "database", "curves", "audit")
-    return {f"{s}:{subject}": made for s in stages for subject, made in state.made(s).items()}
+        version=__version__,
+        code=key_of(code),
+        stages=tuple(sorted((s, one.code) for s, one in stages.fingerprints.items())),
+        environment=tuple(environment.items()),
+        config=tuple(sorted(config.files.items())),
+    )

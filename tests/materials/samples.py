@@ -30,7 +30,11 @@ RAW = "soft-2026/compression"
 PROVENANCE = Provenance(
     version="1.2.3",
     code="c0de" * 6,
-    stages=(("reader:bluehill", 1), ("technique:compression", 2)),
+    stages=(
+        *(("card", "ca4d"), ("figure compression", "f1"), ("measurement compression", "c0")),
+        *(("measurement tension", "7e"), ("summary compression", "5c")),
+    ),
+    environment=(("Python", "3.11.2"), ("numpy", "2.4.6"), ("platform", "Linux x86_64")),
     config=(("materials.toml", "a" * 64), ("methods.toml", "b" * 64)),
 )
 

@@ -10,7 +10,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from deamat.core.records import Measurement
-from deamat.materials.curves import CurvesError, read_curves, unit_of_column, write_curves
+from deamat.materials.curves import (
+    CurvesError,
+    curves_digest,
+    read_curves,
+    unit_of_column,
+    write_curves,
+)
 from deamat.materials.database import MissingMaterial, open_database, write_database
 from tests.materials.samples import PROVENANCE, Columns, card, measurement
 
@@ -39,6 +45,27 @@ def test_the_curves_of_one_technique_lie_end_to_end(path: Path) -> None:
     assert data["specimen"].values.tolist() == ["A1", "A2"]
     assert data["campaign"].values.tolist() == ["soft-2026", "soft-2026"]
     assert set(data.data_vars) == {"nominal_strain", "nominal_stress_Pa"}
+
+
+def test_the_digest_is_of_values_and_not_of_their_layout(path: Path, tmp_path: Path) -> None:
+    other, changed = tmp_path / "other.h5", tmp_path / "changed.h5"
+    with h5py.File(path) as file, h5py.File(other, "w", libver="earliest") as copy:
+        for name in sorted(file, reverse=True):
+            file.copy(name, copy)
+    assert other.read_bytes() != path.read_bytes()
+    assert curves_digest(other) == curves_digest(path)
+    for dropped in ALL[:4]:
+        write_curves(changed, [m for m in ALL if m is not dropped], synthetic_campaigns={"twin-1"})
+        assert curves_digest(changed) != curves_digest(path)
+    for name, value in (("nominal_strain", 0.25), ("curve.synthetic", 1)):
+        shutil.copy(path, changed)
+        with h5py.File(changed, "r+") as file:
+            file[name][1] = value
+        assert curves_digest(changed) != curves_digest(path)
+    shutil.copy(path, changed)
+    with h5py.File(changed, "r+") as file:
+        file["nominal_stress_Pa"].attrs["units"] = "kPa"
+    assert curves_digest(changed) != curves_digest(path)
 
 
 def test_columns_carry_their_units(path: Path) -> None:

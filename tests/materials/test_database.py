@@ -111,9 +111,9 @@ def test_an_auditor_finds_everything_by_plain_sql(path: Path) -> None:
         "SELECT ci95_low, ci95_high FROM properties WHERE key = 'handling_time'"
     ).fetchall()
     releases = connection.execute(
-        "SELECT version, code, stages ->> '$.reader:bluehill' FROM release"
+        "SELECT version, code, stages ->> '$.measurement compression', environment ->> '$.numpy' FROM release"
     )
-    assert releases.fetchall() == [("1.2.3", "c0de" * 6, 1)]
+    assert releases.fetchall() == [("1.2.3", "c0de" * 6, "c0", "2.4.6")]
     connection.close()
     assert rows[0] == (
         *("gel-a", "compressive_modulus", 158812.5, "Pa", 1000.0, 156412.5, 2, "after cure"),

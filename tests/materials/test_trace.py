@@ -24,7 +24,18 @@ from tests.materials.samples import (
 
 _MADE_BY = f"""
 Made by
+  code                     deamat 1.2.3, digest c0dec0dec0dec0dec0dec0de
+  measurement compression  fingerprint c0
+  summary compression      fingerprint 5c
+  card                     fingerprint ca4d
+  with                     Python 3.11.2, numpy 2.4.6, platform Linux x86_64
+  config                   materials.toml, sha256 {"a" * 64}
+  config                   methods.toml, sha256 {"b" * 64}"""
+_MADE_BY_NO_STAGE = f"""
+Made by
   code    deamat 1.2.3, digest c0dec0dec0dec0dec0dec0de
+  card    fingerprint ca4d
+  with    Python 3.11.2, numpy 2.4.6, platform Linux x86_64
   config  materials.toml, sha256 {"a" * 64}
   config  methods.toml, sha256 {"b" * 64}"""
 
@@ -99,7 +110,7 @@ Specimens
     register   soft-2026/compression/specimens.csv, line 5
     technique  handling@1
 """
-        + _MADE_BY
+        + _MADE_BY_NO_STAGE
     )
 
 
@@ -155,7 +166,7 @@ Refused
     conditions   window 0 to 0.01
     diagnostics  samples 2
 """
-        + _MADE_BY
+        + _MADE_BY_NO_STAGE
     )
     assert document["property"] is None
     assert document["refused"][0]["places"] == [

@@ -27,6 +27,7 @@ import json, sys
 from pathlib import Path
 import deamat.run.draw
 from deamat.materials.database import open_database
+from deamat.materials.trace import trace
 from deamat.run import explain, run_all
 from deamat.run.folders import Folders
 
@@ -45,7 +46,12 @@ with open_database("processed") as database:
     card = database["sylgard-182-10to1"]
     moduli = {key: card.record(key, age="after cure").quantity.value
               for key in ("compressive_modulus", "tensile_modulus")}
-print(json.dumps({"foretold": foretold, "redone": redone, "moduli": moduli}))
+    told = trace(database, "sylgard-182-10to1", "compressive_modulus", age="after cure")
+    made_by = {key: told.to_document()[key] for key in ("stages", "environment")}
+print(json.dumps({
+    "foretold": foretold, "redone": redone, "moduli": moduli, "release": document["release"],
+    **made_by,
+}))
 """
 
 
@@ -62,15 +68,21 @@ class Copy:
         assert text.count(old) == 1
         path.write_text(text.replace(old, new))
 
-    def run(self) -> dict[str, Any]:
+    def run(self, python: str = sys.executable) -> dict[str, Any]:
         """Run in a process of its own, which imports the copy."""
         environment = {**os.environ, "PYTHONPATH": str(self.place / "lib")}
         done = subprocess.run(
-            [sys.executable, "-c", _RUN],
+            [python, "-c", _RUN],
             cwd=self.place, env=environment, capture_output=True, text=True, check=False,
         )  # fmt: skip
         assert done.returncode == 0, done.stderr
         document: dict[str, Any] = json.loads(done.stdout)
+        return document
+
+    @property
+    def first(self) -> dict[str, Any]:
+        """What the run before any edit told."""
+        document: dict[str, Any] = json.loads((self.place / "first.json").read_text())
         return document
 
     def cards(self) -> dict[str, bytes]:
@@ -90,7 +102,7 @@ def first(tmp_path_factory: pytest.TempPathFactory) -> Copy:
     all_of_one_material(place / "raw" / "batch", _FLUID, most=1)
     copy = Copy(place)
     done = copy.run()
-    (place / "moduli.json").write_text(json.dumps(done["moduli"]))
+    (place / "first.json").write_text(json.dumps(done))
     return copy
 
 
@@ -113,10 +125,15 @@ def _techniques(redone: list[str], stage: str) -> set[str]:
 
 
 def test_a_doubled_slope_redoes_every_modulus_and_what_comes_after(copy: Copy) -> None:
-    before, cards = json.loads((copy.place / "moduli.json").read_text()), copy.cards()
+    before, cards = copy.first, copy.cards()
     copy.edit("estimators/curves/slope.py", "slope=slope,", "slope=2.0 * slope,")
     done = copy.run()
-    assert done["moduli"] == {key: pytest.approx(2.0 * value) for key, value in before.items()}
+    assert done["moduli"] == {
+        key: pytest.approx(2.0 * value) for key, value in before["moduli"].items()
+    }
+    assert done["release"] != before["release"]
+    changed = {s for s, code in done["stages"].items() if code != before["stages"][s]}
+    assert changed == {f"{s} {t}" for s in ("measurement", "summary", "figure") for t in _MODULI}
     redone = done["redone"]
     needing = {t.key for t in TECHNIQUES.values() if {"compressive_modulus"} & set(t.needs)}
     assert needing == {"permittivity"}
@@ -153,6 +170,8 @@ def test_a_refactoring_changes_no_card(
     done = copy.run()
     assert _techniques(done["redone"], "measurement") == measured
     assert copy.cards() == cards
+    assert done["release"] == copy.first["release"]
+    assert done["stages"] != copy.first["stages"]
     foretold = {line.partition(": ")[0] for line in done["foretold"]}
     assert foretold >= {line.partition(": ")[0] for line in done["redone"]}
 
@@ -163,12 +182,35 @@ def test_another_version_of_a_library_is_seen(copy: Copy) -> None:
     pretended = copy.place / "lib" / "numpy-99.9.dist-info"
     pretended.mkdir()
     (pretended / "METADATA").write_text("Metadata-Version: 2.1\nName: numpy\nVersion: 99.9\n")
-    redone = copy.run()["redone"]
+    done = copy.run()
+    redone = done["redone"]
+    assert done["environment"]["numpy"] == "99.9"
+    assert done["release"] == copy.first["release"]
     measured = [line for line in redone if line.startswith("measurement")]
     assert {line.partition(": ")[2] for line in measured} >= {"library numpy changed"}
     assert _techniques(redone, "measurement") == set(TECHNIQUES)
     assert copy.cards() == cards
     assert copy.run()["redone"] == []
+
+
+@pytest.mark.parametrize("minor", [m for m in range(11, 15) if m != sys.version_info.minor])
+def test_another_python_gives_the_same_release(minor: int, copy: Copy) -> None:
+    python = shutil.which(f"python3.{minor}")
+    if python is None:
+        pytest.skip(f"no python3.{minor} on the PATH")
+    wanted = {n: v for n, v in copy.first["environment"].items() if n not in ("Python", "platform")}
+    ask = "import sys, importlib.metadata as m; print(*map(m.version, sys.argv[1:]))"
+    asked = [python, "-c", ask, *wanted]
+    there = subprocess.run(asked, capture_output=True, text=True, check=False).stdout.split()
+    if there != list(wanted.values()):
+        pytest.skip(f"the libraries of {python} are not those of this Python")
+    cards = copy.cards()
+    done = copy.run(python)
+    measured = [line for line in done["redone"] if line.startswith("measurement")]
+    assert {line.partition(": ")[2] for line in measured} == {"Python changed"}
+    assert done["environment"]["Python"].startswith(f"3.{minor}.")
+    assert done["release"] == copy.first["release"]
+    assert copy.cards() == cards
 
 
 def test_every_technique_is_keyed_on_the_room_that_it_comes_from() -> None:

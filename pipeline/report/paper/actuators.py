@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -79,7 +80,7 @@ def literature(row: str) -> Design:
 
     def layer(name: str) -> tuple[float, float]:
         paths = [path for path, _ in printed.numbers(f"table1.{row}.t_{name}")]
-        thickness = sum(map(printed.si, paths)) / len(paths)
+        thickness = math.fsum(map(printed.si, paths)) / len(paths)
         return thickness, printed.si(f"table1.{row}.Y_{name}")
 
     films, (film, modulus) = int(printed.value(f"table1.{row}.n_de")), layer("de")

@@ -156,7 +156,7 @@ def _records(sample: Sample, lost: list[str], config: BreakdownConfig) -> list[P
         own = tuple(w for w in estimate.warnings if w not in wide.fit.warnings)
         u = 0.5 * (one_sigma.high - one_sigma.low)
         method = f"{what} of a two-parameter Weibull fit by maximum likelihood"
-        ci95 = widened(estimate, math.sqrt(sum(c.u**2 for c in shared)))
+        ci95 = widened(estimate, math.sqrt(math.fsum(c.u**2 for c in shared)))
         return record(key, estimate.estimate, ci95, u, method, *_as_flags(own))
 
     u_shape = 0.5 * (narrow.shape().high - narrow.shape().low)

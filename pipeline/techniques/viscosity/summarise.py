@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -56,7 +57,7 @@ def _temperature(runs: Sequence[Specimen]) -> dict[str, float]:
     stated = [s.numbers[_TEMPERATURE] for s in runs if _TEMPERATURE in s.numbers]
     if len(stated) < len(runs):
         return {}
-    return {_TEMPERATURE: sum(t.value for t in stated) / len(stated)}
+    return {_TEMPERATURE: math.fsum(t.value for t in stated) / len(stated)}
 
 
 _TEMPERATURE = "temperature_K"

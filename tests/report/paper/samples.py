@@ -103,5 +103,7 @@ def cards() -> tuple[MaterialCard, ...]:
 def database(processed: Path) -> Path:
     """Write the database into a results folder and give that folder."""
     processed.mkdir(parents=True, exist_ok=True)
-    write_database(processed / "materials.sqlite", cards(), (), Provenance("1", "c" * 24, (), ()))
+    write_database(
+        processed / "materials.sqlite", cards(), (), Provenance("1", "c" * 24, (), (), ())
+    )
     return processed

@@ -62,7 +62,7 @@ def fluid(tmp_path: Path, index: list[float]) -> Database:
         FLUID, "Sylgard 186 (40:1)", True, records=(), campaigns=(TWIN,),
         laws=(law("viscosity", tuple(index), FLUID),),
     )  # fmt: skip
-    write_database(tmp_path / "materials.sqlite", [card], (), Provenance("1", "c" * 24, (), ()))
+    write_database(tmp_path / "materials.sqlite", [card], (), Provenance("1", "c" * 24, (), (), ()))
     return open_database(tmp_path)
 
 
