@@ -75,6 +75,7 @@ CONDITIONS: dict[str, str] = {
     "rate_per_s": "nominal strain rate or shear rate of the test",
     "time_s": "time since mixing",
     "window": "range of strain or time that was fitted: [low, high]",
+    "electrode": "material of the electrode, as the register says it",
     "electrode_area_m2": "area under the electrode",
     "rate_V_per_s": "rate of rise of the test voltage, as it was set",
 }

@@ -26,7 +26,7 @@ from deamat.core.units import UNITS, known, si_factor
 REGISTER_FILE = "specimens.csv"
 REGISTER_FILES = (REGISTER_FILE, "observations.csv")
 
-_CONDITIONS = ("age", "cure")
+_CONDITIONS = ("age", "cure", "electrode")
 # Stems that always carry a unit: `diameter_furlong` is a slip, `curing_temperature` a note.
 _STEMS = (
     "diameter", "height", "width", "thickness", "gauge_length", "speed", "temperature", "humidity",

@@ -20,7 +20,7 @@ Cell = str | float | bool | None
 
 _WINDOW = "window"  # the one condition of two numbers, so it has two columns
 _CONDITIONS = tuple(c for c in CONDITIONS if c != _WINDOW)
-_WORDS = ("age", "cure")  # the conditions that are no numbers
+_WORDS = ("age", "cure", "electrode")  # the conditions that are no numbers
 
 
 def to_frame(

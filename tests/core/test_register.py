@@ -31,6 +31,11 @@ def test_a_good_row() -> None:
     assert specimen.line == 2
 
 
+def test_the_material_of_the_electrode_is_a_condition() -> None:
+    (specimen,) = _read(_GOOD.replace("cup", "electrode").replace("150 ml", "graphite")).specimens
+    assert specimen.conditions == {"age": "after cure", "electrode": "graphite"}
+
+
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
