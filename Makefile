@@ -18,7 +18,7 @@ paper: all  ## write processed/paper/: the article's numbers, printed beside rec
 test: $(VENV)/.dev  ## run the whole test suite
 	@$(BIN)/python -m pytest --numprocesses=auto --dist=loadfile
 
-quick: $(VENV)/.dev  ## a third of it in half a minute: core, formats, cards, actuator, one small run
+quick: $(VENV)/.dev  ## the tests of half a minute: core, formats, cards, actuator, one small run
 	@$(BIN)/python -m pytest --numprocesses=auto --dist=loadfile $(QUICK)
 
 check: $(VENV)/.dev .link/deamat  ## style, types and import contracts
