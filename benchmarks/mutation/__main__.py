@@ -13,7 +13,7 @@ import tomllib
 from collections.abc import Sequence
 from pathlib import Path
 
-from benchmarks.mutation.copies import Copy, copy_of
+from benchmarks.mutation.copies import copy_of
 from benchmarks.mutation.judge import Verdict, verdicts
 from benchmarks.mutation.mutants import Mutant, mutants_of, sample_of
 from benchmarks.mutation.tests_of import measured
@@ -31,6 +31,9 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1, help="of the sample (default: 1)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="at a time")
     parser.add_argument("--at-least", type=float, default=85.0, help="percent killed, or exit 1")
+    parser.add_argument(
+        "--tests", nargs="+", metavar="FOLDER", help="that judge (default: tests/PACKAGE alone)"
+    )
     asked = parser.parse_args()
     reasons = reasons_in(REASONS.read_text(encoding="utf-8"))
     good = True
@@ -38,7 +41,10 @@ def main() -> int:
         now = copy_of(PROJECT, Path(there, "now"))  # the tree may be edited meanwhile
         copies = [copy_of(now.root, Path(there, str(job))) for job in range(asked.jobs)]
         for package in asked.packages:
-            judged = _judged(now.root, copies, package, asked.sample, asked.seed)
+            sample = _sample(now.root, package, asked.sample, asked.seed)
+            tests = asked.tests or [f"tests/{package}"]
+            hits = measured(copies, now.root / "pipeline", package, tests, STATE / "hits")
+            judged = verdicts(copies, now.root, sample, hits, STATE / f"{package}.jsonl")
             lines, passed = report(judged, reasons, asked.at_least)
             print("\n".join(lines), flush=True)
             good = good and passed
@@ -80,14 +86,11 @@ def _key(mutant: Mutant) -> tuple[str, str, str, str]:
     return mutant.file, mutant.function, mutant.before, mutant.after
 
 
-def _judged(
-    project: Path, copies: Sequence[Copy], package: str, count: int, seed: int
-) -> list[Verdict]:
+def _sample(project: Path, package: str, count: int, seed: int) -> list[Mutant]:
     everything = mutants_of(project / "pipeline", package)
     sample = sample_of(everything, count, seed)
     print(f"{package}: {len(sample)} of {len(everything)} mutants, seed {seed}", flush=True)
-    hits = measured(copies, project / "pipeline", package, STATE / "hits")
-    return verdicts(copies, project, sample, hits, STATE / f"{package}.jsonl")
+    return sample
 
 
 if __name__ == "__main__":

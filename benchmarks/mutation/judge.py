@@ -50,11 +50,17 @@ def verdicts(
             return
         compile_tests(copy)
         with log.open("a", encoding="utf-8") as lines, _worker(copy) as worker:
+            checked = False
             while True:
                 try:
                     mutant, source, tests = waiting.get_nowait()
                 except queue.Empty:
                     break
+                if tests and not checked:
+                    checked = True
+                    killer = _ask(worker, copy, source, mutant.file, tests, LEAST_CPU_S)
+                    if killer is not None:
+                        raise RuntimeError(f"without a mutant the tests fail too: {killer}")
                 limit = LEAST_CPU_S + SLOWER * sum(hits.seconds[name] for name in tests)
                 killer = _ask(worker, copy, mutant.applied_to(source), mutant.file, tests, limit)
                 found[mutant.name] = Verdict(mutant, killer, len(tests))

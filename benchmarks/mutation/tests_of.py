@@ -1,4 +1,4 @@
-"""Which tests run which line: the whole suite once, over a copy that notes its blocks."""
+"""Which tests run which line: they run once, over a copy that notes its blocks."""
 
 from __future__ import annotations
 
@@ -56,14 +56,16 @@ class Hits:
         return chosen
 
 
-def measured(copies: Sequence[Copy], folder: Path, package: str, cache: Path) -> Hits:
-    """Run the suite over an instrumented package, or take what is known of unchanged files."""
+def measured(
+    copies: Sequence[Copy], folder: Path, package: str, tests: Sequence[str], cache: Path
+) -> Hits:
+    """Run the tests over an instrumented package, or take what is known of unchanged files."""
     hits = Hits(importers=importers_of(folder, package))
     code = digest(sorted((folder / package).rglob("*.py")))
     root = folder.parent
     told: list[Path] = []
     waiting: list[tuple[str, Path]] = []
-    for path in sorted((root / "tests").rglob("test_*.py")):
+    for path in sorted({path for one in tests for path in (root / one).rglob("test_*.py")}):
         name = str(path.relative_to(root))
         known = cache / code / f"{digest([path, root / 'tests/conftest.py'], name)}.json"
         told.append(known)

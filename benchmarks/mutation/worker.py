@@ -22,7 +22,7 @@ import pytest
 from benchmarks.mutation.plugin import Selected
 
 LIBRARIES = (
-    "click", "h5py", "hypothesis", "jinja2", "numpy", "pydantic", "scipy.interpolate",
+    "click", "h5py", "jinja2", "numpy", "pydantic", "scipy.interpolate",
     "scipy.optimize", "scipy.special", "scipy.stats", "xarray",
 )  # fmt: skip
 AT_MOST_SLOWER = (
