@@ -58,6 +58,12 @@ def test_how_a_pull_ended(curve: tuple[FloatArray, FloatArray], end: End, last: 
     assert found.first_after == (last + 1 if end == "broke" else None)
 
 
+def test_a_load_that_falls_by_less_than_the_drop_is_still_carried() -> None:
+    for left, end in ((0.5, "stopped"), (0.499, "broke")):
+        strain, stress = record(UP, (np.array([1.52]), np.array([left * E * 1.5])))
+        assert find_rupture(strain, stress, 0.5).end == end
+
+
 def test_an_unsteady_fall_of_the_load_before_the_end_is_still_one_break() -> None:
     strain, stress = record(UP, (np.linspace(1.5, 1.52, 5), E * np.array([1.4, 1.1, 0.9, 0.2, 0])))
     found = find_rupture(strain, stress, 0.5)

@@ -33,6 +33,21 @@ def test_an_approach_in_air_is_no_position() -> None:
     assert zero_of_position(strain, 600e3 * np.maximum(strain, 0.0)) == "at contact"
 
 
+@pytest.mark.parametrize(("carried", "zero"), [(0.4, "at contact"), (0.6, "absolute")])
+def test_an_approach_carries_less_than_half_of_what_its_length_as_a_strain_would(
+    carried: float, zero: str
+) -> None:
+    strain = np.linspace(-0.02, 0.02, 401)
+    stress = 600e3 * np.minimum(strain + 0.02, carried * 0.02)
+    assert zero_of_position(strain, stress) == zero
+
+
+def test_the_stiffness_at_the_start_decides_however_stiff_the_specimen_becomes() -> None:
+    late = STRAIN + 0.1
+    stiffening = 600e3 * late + 50e6 * np.maximum(late - 1.0, 0.0)
+    assert zero_of_position(late, stiffening) == "at contact"
+
+
 def test_a_start_that_is_neither_is_refused_with_both_numbers() -> None:
     with pytest.raises(FitRefused, match="starts at 10 % of the length with 35 % of the load"):
         zero_of_position(STRAIN + 0.1, STRESS + 0.35 * 600e3 * 0.1)
@@ -51,6 +66,8 @@ def test_a_hold_ends_before_the_machine_moves() -> None:
     still = find_hold(strain, np.concatenate([np.zeros(7), STRESS]))
     assert (still.last, still.gripping, still.load_change) == (7, False, 0.0)
     assert find_hold(STRAIN, STRESS).last == 0
+    without_load = find_hold(strain, np.zeros(strain.size))
+    assert (without_load.last, without_load.load_change) == (7, 0.0)
 
 
 def broken(zero: float) -> FloatArray:

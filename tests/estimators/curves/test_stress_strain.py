@@ -81,6 +81,8 @@ def test_too_few_samples_are_refused_with_the_rate_that_would_do() -> None:
         "and one follows every 0.4 %: a sampling rate at least 4 times higher"
     )
     assert refused(np.array([0.2]), 0.0, 0.01).endswith("record the whole test")
+    slower_later = np.concatenate([[0.0], 0.02 + 0.002 * np.arange(100.0)])
+    assert "one follows every 0.2 %" in refused(slower_later, 0.025, 0.03)
 
 
 def test_the_advised_rate_is_enough() -> None:
@@ -136,6 +138,20 @@ def test_bins_are_least_squares_each() -> None:
         assert bins.mean_y[k] == pytest.approx(y[part].mean())
         assert bins.count[k] == part.sum()
     assert bins.steepest == 4
+
+
+def test_bins_count_from_the_low_end_and_stay_empty_beyond_the_last_sample() -> None:
+    x = np.linspace(0.02, 0.0399, 100)
+    bins = bin_slopes(x, 3.0 * x, 0.02, 0.05, 0.01)
+    assert bins.count == (50, 50, 0)
+    assert bins.slope[:2] == pytest.approx((3.0, 3.0))
+    assert np.isnan(bins.slope[2])
+
+
+def test_a_bin_wider_than_the_window_is_the_window() -> None:
+    x = np.linspace(0.0, 0.05, 101)
+    for width in (0.06, 1e6):
+        assert bin_slopes(x, 2.0 * x, 0.0, 0.05, width).slope == pytest.approx((2.0,))
 
 
 def test_bins_without_three_samples_have_no_slope() -> None:

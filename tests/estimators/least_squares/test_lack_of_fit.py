@@ -44,6 +44,17 @@ def test_a_wrong_point_is_found_and_named() -> None:
     assert outlying(X, y, fit_line(X, y)).tolist() == [17]
 
 
+def test_a_wrong_point_that_draws_the_line_to_itself_is_found_by_its_leverage() -> None:
+    # the line follows the far point half of its way: 10 deviations off, it lies within 6 of the line
+    x = np.append(np.linspace(0.0, 1.0, 400), [6.5])
+    y = 2.0 * x + 0.1 * np.random.default_rng(46).standard_normal(401)
+    y[400] = 2.0 * 6.5 + 1.0
+    fit = fit_polynomial(x, y, 1)
+    assert 0.45 < fit.leverages[400] < 0.6
+    assert abs(fit.residuals[400]) < 6.0 * 0.1
+    assert outlying_points(fit).tolist() == [400]
+
+
 def test_sound_lines_have_no_outlying_reading() -> None:
     rng = np.random.default_rng(44)
     found: list[int] = []

@@ -99,6 +99,12 @@ def test_data_without_noise_give_the_truth() -> None:
     assert np.all(fit.standard_errors < 1e-14)
 
 
+def test_the_gradient_is_told_as_part_of_the_residuals_and_is_zero_without_any() -> None:
+    assert 0.0 < fit_nonlinear(growth, growth_jacobian, [1.0, 1.0], Y).gradient < 1e-12
+    line = X[:, None]
+    assert fit_nonlinear(lambda b: b[0] * X, lambda _: line, [1.0], 2.0 * X).gradient == 0.0
+
+
 def test_bounds_that_do_not_bind_change_nothing() -> None:
     free = fit_nonlinear(growth, growth_jacobian, [1.0, 1.0], Y)
     bounded = fit_nonlinear(

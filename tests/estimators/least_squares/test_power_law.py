@@ -99,6 +99,9 @@ def test_outside_the_fitted_times_and_rates_there_is_no_answer() -> None:
     )
     with pytest.raises(OutOfRange):
         fit(13.0, 0.1)
+    for time in (1.0, 12.0):
+        for rate in (0.05, 0.6):
+            assert fit(time, rate)[0] == pytest.approx(law(time, rate), rel=1e-9)
 
 
 def refused(*arguments: Any) -> str:
