@@ -56,8 +56,7 @@ def find_rupture(strain: FloatArray, stress: FloatArray, drop: float) -> Rupture
         return _unbroken(strain, stress, "reversed" if turned else "stopped")
     after = last + 1
     gone_back = float(strain[:after].max() - strain[after])
-    filled = strain[after] == 0.0 and stress[after] == 0.0 and not np.any(strain[after:])
-    if filled or gone_back <= _BACK * float(strain.max()):
+    if gone_back <= _BACK * float(strain.max()):
         return Rupture("broke", last, int(stress[:after].argmax()), after)
     if _carries_on_return(strain, stress, after, drop):
         return _unbroken(strain, stress, "reversed")

@@ -84,6 +84,11 @@ def test_every_open_sample_agrees_with_forty_digits(shared: Path, name: str) -> 
 
 LAST_15_CENSORED = np.arange(20) > 4
 
+FAR_BELOW = (
+    np.concatenate([[7.2e-6], 1.0 + 1e-4 * np.array([1.3, 6.6, 6.9, 0.6, 0.1, 2.3, 3.1, 7.5])]),
+    np.array([True, False, True, False, False, True, True, False, False]),
+)
+
 ANSWERED = {
     "ok": (GOOD, NONE),
     "n=3": (GOOD[:3], NONE[:3]),
@@ -98,6 +103,7 @@ ANSWERED = {
     "5 failures, the others stopped early": (np.where(LAST_15_CENSORED, 20.0, GOOD), LAST_15_CENSORED),
     "5 failures, the others outlast them": (np.where(LAST_15_CENSORED, 900.0, GOOD), LAST_15_CENSORED),
     "5 failures, one survivor at 1e6": (np.append(GOOD[:5], 1e8), np.arange(6) > 4),
+    "survivors far below failures that lie together": FAR_BELOW,
     "spread just enough": (97.0 + 2e-6 * GOOD, NONE),
 }  # fmt: skip
 
@@ -216,6 +222,14 @@ def test_a_batch_gives_the_single_answers_and_passes_over_refused_samples() -> N
         assert batch.scale[i] == pytest.approx(single.scale, rel=1e-14)
         assert batch.log_likelihood[i] == pytest.approx(single.log_likelihood, rel=1e-13)
         assert batch.failures[i] == single.failures == 6
+
+
+def test_a_hard_sample_in_a_batch_gets_its_own_answer() -> None:
+    x, censored = FAR_BELOW
+    batch = fit_batch(np.stack([GOOD[:9], x]), np.stack([NONE[:9], censored]))
+    assert batch.shape.tolist() == pytest.approx(
+        [fit(GOOD[:9], NONE[:9]).shape, fit(x, censored).shape], rel=1e-12
+    )
 
 
 samples = st.lists(st.floats(1.0, 1000.0), min_size=4, max_size=30).map(np.array)

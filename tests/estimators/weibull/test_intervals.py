@@ -177,6 +177,7 @@ def test_probability_and_quantile_are_two_readings_of_one_bound() -> None:
     assert asked.failure_probability(b1.high).low == pytest.approx(0.01, rel=1e-7)
     larger = asked.quantile(0.01, area_ratio=30.0)
     assert asked.failure_probability(larger.low, 30.0).high == pytest.approx(0.01, rel=1e-7)
+    assert asked.failure_probability(larger.estimate, 30.0).estimate == pytest.approx(0.01)
 
 
 def test_cable_intervals_hold_their_estimates_and_narrow_with_the_level() -> None:
@@ -222,6 +223,10 @@ def test_impossible_questions_are_out_of_range() -> None:
         asked.failure_probability(-3.0)
     with pytest.raises(OutOfRange, match="an area ratio must lie above 0 and finite, not nan"):
         asked.predictive(40.0, float("nan"))
+    with pytest.raises(OutOfRange, match="an area ratio must lie above 0 and finite, not inf"):
+        asked.failure_probability(40.0, float("inf"))
+    with pytest.raises(OutOfRange, match="an area ratio must lie above 0 and finite, not 0"):
+        asked.quantile(0.5, 0.0)
     with pytest.raises(OutOfRange, match="the question lies too far from the sample"):
         infer(97.0 * (CABLE_I / 97.0) ** 0.001).failure_probability(1e-9)
 
