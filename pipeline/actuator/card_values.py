@@ -109,9 +109,9 @@ def _for(kind: str, where: Where) -> dict[str, Condition | None]:
 
 def _area_ratio(strength: PropertyRecord, declared: Designs) -> tuple[float, list[str]]:
     tested = strength.conditions.get("electrode_area_m2")
-    if not isinstance(tested, float) or "area_ratio_limit" not in strength.diagnostics:
+    limit = strength.area_ratio_limit
+    if not isinstance(tested, float) or limit is None:
         return 1.0, ["the breakdown tests state no electrode area: not scaled to that of the strip"]
-    limit = float(strength.diagnostics["area_ratio_limit"])
     ratio = area_ratio(tested, declared.geometry.area_m2, limit)
     return ratio, [f"breakdown scaled to an electrode {ratio:.3g} times as large as the tested one"]
 

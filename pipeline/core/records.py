@@ -268,6 +268,11 @@ class PropertyRecord:
     ] = "exact"
     n: Annotated[int, COUNT, "Specimens behind the value."]
     conditions: Mapping[str, Condition]
+    area_ratio_limit: Annotated[
+        float | None,
+        "How many times as large, or as small, an electrode may be that a Weibull strength is "
+        "scaled to: E2 = E1 (A1/A2)^(1/shape). Left out where it cannot be scaled.",
+    ] = None
     campaign: Annotated[str, ID, Mark.IN_FRONT]
     method: Annotated[str, SAID, "Estimator and window in words."]
     budget: Annotated[
@@ -350,6 +355,16 @@ class Law:
     ] = None
     degrees_of_freedom: Annotated[
         float | None, Mark.ALWAYS, "Of the covariance; null where it counts as known."
+    ] = None
+    temperature_K: Annotated[
+        float | None,
+        "Mean temperature of the liquid in the runs that were fitted. Left out where the register "
+        "does not state it of all of them.",
+    ] = None
+    rate_per_rpm_per_s: Annotated[
+        float | None,
+        "Nominal shear rate (1/s) over speed (rpm) of the viscometer. Left out for a form without "
+        "a rate.",
     ] = None
     conditions: Mapping[str, Condition]
     campaign: Annotated[str, ID, Mark.IN_FRONT]

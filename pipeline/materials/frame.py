@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from deamat.core.errors import OutOfRange
 from deamat.core.properties import CONDITIONS, property_key
 from deamat.core.records import PropertyRecord
+from deamat.core.schema import fields_of
 from deamat.core.units import read_quantity, si_factor
 from deamat.materials.card import MaterialCard
 
@@ -44,7 +45,8 @@ def to_frame(
     columns `material`, `name`, `synthetic`, `campaign`, `property`, `value`, `unit`,
     `u_independent`, `u_shared`, `standard_uncertainty`, `sd`, `ci95_low`, `ci95_high` (all in
     `unit`), `n`, `bound` (`exact`, `interval`, `lower`), `method`, `flags`, then one column for
-    each condition, empty where a record does not state it; numbers carry the unit in the name
+    each condition and each fact that only some records have (`area_ratio_limit`), empty where a
+    record does not state it; numbers carry the unit in the name
 
     Raises
     ------
@@ -65,13 +67,20 @@ def to_frame(
     return pd.DataFrame(rows, columns=_COLUMNS).astype(dict.fromkeys(_NUMBERS, "float64"))
 
 
+# What is known of some properties alone, one column each.
+_FACTS = tuple(f for f in fields_of(PropertyRecord) if f.optional and len(f.columns) == 1)
+
 _COLUMNS = [
     *("material", "name", "synthetic", "campaign", "property", "value", "unit"),
     *("u_independent", "u_shared", "standard_uncertainty", "sd", "ci95_low", "ci95_high"),
     *("n", "bound", "method", "flags", *_CONDITIONS, "window_low", "window_high"),
+    *(field.name for field in _FACTS),
 ]
 # Else a column in which nothing is stated would be one of objects, which cannot be compared.
-_NUMBERS = ("sd", *(c for c in _CONDITIONS if c not in _WORDS), "window_low", "window_high")
+_NUMBERS = (
+    *("sd", *(c for c in _CONDITIONS if c not in _WORDS), "window_low", "window_high"),
+    *(field.name for field in _FACTS if field.kind.sql == "REAL"),
+)
 
 
 def _row(card: MaterialCard, record: PropertyRecord, shown: tuple[str, float]) -> list[Cell]:
@@ -87,6 +96,7 @@ def _row(card: MaterialCard, record: PropertyRecord, shown: tuple[str, float]) -
         *(record.n, record.bound, record.method, "; ".join(flag.name for flag in record.flags)),
         *(_told(record, condition) for condition in _CONDITIONS),
         *(low, high),
+        *(field.get(record) for field in _FACTS),
     ]
 
 

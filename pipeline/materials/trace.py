@@ -21,7 +21,7 @@ from deamat.core.present import (
 from deamat.core.properties import property_key
 from deamat.core.quantity import Contribution, Quantity
 from deamat.core.records import Condition, Detail, Law, Origin, PropertyRecord, Refusal
-from deamat.core.schema import document_of
+from deamat.core.schema import document_of, fields_of
 from deamat.materials.card import MaterialCard
 from deamat.materials.database import Database
 from deamat.materials.document import Document
@@ -178,6 +178,10 @@ def _facts(entry: Entry, card: MaterialCard) -> Iterator[tuple[str, str]]:
     else:
         yield from _value_facts(entry)
     yield "conditions", readable_conditions(entry.conditions)
+    for field in fields_of(type(entry)):
+        value = field.get(entry)
+        if field.optional and value is not None:
+            yield field.name, _number_or_words(value)
     credits_ = [credit_text(c) for c in card.campaigns if c.campaign == entry.campaign]
     yield "campaign", next(iter(credits_), entry.campaign)
     yield "method", entry.method
@@ -268,7 +272,8 @@ def _code_facts(trace: Trace) -> Iterator[tuple[str, str]]:
 
 
 def _details(details: Mapping[str, Detail]) -> str:
-    return ", ".join(
-        f"{name} {value:.6g}" if isinstance(value, float) else f"{name} {value}"
-        for name, value in sorted(details.items())
-    )
+    return ", ".join(f"{name} {_number_or_words(v)}" for name, v in sorted(details.items()))
+
+
+def _number_or_words(value: object) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

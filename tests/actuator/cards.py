@@ -51,7 +51,7 @@ def record(
         key=key, material=material, campaign=CAMPAIGN, quantity=quantity, n=n, sd=None,
         ci95=(value - 2 * u, value + 2 * u), conditions={**STATE, **conditions},
         method="made by hand", budget=lines, origins=(origin,),
-        diagnostics={"area_ratio_limit": 10.0} if "electrode_area_m2" in conditions else {},
+        area_ratio_limit=10.0 if "electrode_area_m2" in conditions else None,
     )  # fmt: skip
 
 

@@ -25,6 +25,7 @@ from pathlib import Path
 from deamat import open_database
 from deamat.materials.card import read_card
 from deamat.materials.database import write_database
+from deamat.materials.frame import to_frame
 from deamat.materials.json_schema import schema_text
 from tests.materials.samples import FILES, PROVENANCE, aged, card, modulus
 
@@ -38,6 +39,7 @@ with open_database(folder) as database:
         assert found == made.canonical()
         print([record.batch for record in found.records])
 print(card().release)
+print(to_frame([made])["batch"].dropna().tolist())
 """
 
 
@@ -94,6 +96,10 @@ def test_the_database_has_a_column_of_it(made: tuple[Path, list[str]]) -> None:
 
 def test_it_comes_back_from_the_database_and_from_the_file(made: tuple[Path, list[str]]) -> None:
     assert made[1][:2] == ["[None, 'B7']", "[None, 'B7']"]
+
+
+def test_a_frame_has_a_column_of_it(made: tuple[Path, list[str]]) -> None:
+    assert made[1][3] == "['B7']"
 
 
 def test_a_card_without_it_is_the_same_as_before(made: tuple[Path, list[str]]) -> None:

@@ -54,6 +54,13 @@ def test_every_record_is_a_row_that_says_its_unit() -> None:
     assert str(frame["frequency_Hz"].dtype) == "float64"
 
 
+def test_what_only_some_records_state_has_a_column() -> None:
+    scaled = modulus(area_ratio_limit=10.0, conditions={})
+    frame = to_frame([card(records=(scaled, *card().records))])
+    assert frame["area_ratio_limit"].tolist()[0] == 10.0
+    assert frame["area_ratio_limit"].isna().tolist() == [False, True, True, True]
+
+
 def test_units_are_those_asked_for() -> None:
     frame = to_frame([card()], units={"compressive_modulus": "kPa"})
     row = frame.iloc[0]

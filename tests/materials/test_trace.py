@@ -136,6 +136,15 @@ Specimens
     )
 
 
+def test_a_chain_tells_what_only_some_laws_state(tmp_path: Path) -> None:
+    path = tmp_path / "one.sqlite"
+    write_database(path, [card(laws=(viscosity_law(temperature_K=296.15),))], FILES, PROVENANCE)
+    with open_database(path) as db:
+        lines = trace(db, "gel-a", "viscosity").text().splitlines()
+    assert "  temperature_K  296.15" in lines
+    assert not any("rate_per_rpm_per_s" in line for line in lines)
+
+
 def test_a_refused_value_tells_reasons_and_places(tmp_path: Path) -> None:
     # The specimen gave a strength in the same test, so its file and row are known.
     pulled = {

@@ -300,7 +300,7 @@ def _field(
     context: Context[BreakdownConfig],
 ) -> MeasuredValue:
     """Divide by the thickness and put the budget together."""
-    flags, details = seen.flags, dict(seen.diagnostics)
+    flags, details = seen.flags, {**seen.diagnostics}
     budget: tuple[Contribution, ...] = seen.budget
     value, method = seen.value, seen.method
     if thickness is not None:

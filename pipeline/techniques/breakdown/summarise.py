@@ -65,6 +65,12 @@ class Sample:
     field_V_per_m: FloatArray
     censored: NDArray[np.bool_]
 
+    @property
+    def area_m2(self) -> float | None:
+        """Area under the electrodes, where the register declares it."""
+        area_m2 = self.conditions.get("electrode_area_m2")
+        return area_m2 if isinstance(area_m2, float) else None
+
 
 def samples(measurements: Sequence[Measurement[FilmTest]]) -> Iterator[Sample]:
     """Part the specimens by electrode area and rate of rise; other conditions are one group's."""
@@ -123,6 +129,7 @@ def _records(sample: Sample, lost: list[str], config: BreakdownConfig) -> list[P
     unbiased = unbiased_shape(x, censored)
     shape = wide.shape()
     shared = _shared(sample)
+    limit = None if sample.area_m2 is None else config.area_ratio_limit
     details = _diagnostics(sample, wide, form, lowest, config)
     flags = _flags(sample, wide, form, lowest, lost, config)
 
@@ -145,6 +152,7 @@ def _records(sample: Sample, lost: list[str], config: BreakdownConfig) -> list[P
             sd=None,  # of a Weibull sample the shape says it; a mean and sd would be read as normal
             ci95=ci95,
             conditions=sample.conditions,
+            area_ratio_limit=limit if unit == "V/m" else None,
             method=f"{method}; {_methods(sample)}; interval: {shape.method}",
             budget=budget,
             origins=tuple(origin_of(m, v, f"breakdown@{VERSION}") for m, v in sample.pairs),
@@ -229,7 +237,6 @@ def _diagnostics(
         "least_field_V_per_m": float(sample.field_V_per_m.min()),
         "greatest_field_V_per_m": float(sample.field_V_per_m.max()),
         "area_scaling": _area_scaling(sample, config),
-        "area_ratio_limit": config.area_ratio_limit,
         **{f"ended by {how}": count for how, count in sorted(ends.items())},
     }
     for name, found in (
@@ -247,11 +254,11 @@ def _diagnostics(
 
 
 def _area_scaling(sample: Sample, config: BreakdownConfig) -> str:
-    area_m2 = sample.conditions.get("electrode_area_m2")
-    if not isinstance(area_m2, float):
+    if sample.area_m2 is None:
         return "not possible: the register declares no electrode area"
+    area_mm2 = from_si(sample.area_m2, "mm2")
     return (
-        f"E2 = E1 (A1/A2)^(1/shape) from A1 = {from_si(area_m2, 'mm2'):.4g} mm2, for A1/A2 of "
+        f"E2 = E1 (A1/A2)^(1/shape) from A1 = {area_mm2:.4g} mm2, for A1/A2 of "
         f"{1 / config.area_ratio_limit:g} to {config.area_ratio_limit:g}"
     )
 

@@ -55,8 +55,8 @@ def _law(handling: PropertyRecord, laws: Mapping[str, Law], tolerance_K: float) 
         )
     law = laws[VISCOSITY]
     bed = handling.conditions.get("temperature_K")
-    liquid = law.diagnostics.get("temperature_K")
-    if not isinstance(bed, float) or not isinstance(liquid, float):
+    liquid = law.temperature_K
+    if not isinstance(bed, float) or liquid is None:
         return law
     if abs(bed - liquid) > tolerance_K:
         raise FitRefused(

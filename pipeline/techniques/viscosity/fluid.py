@@ -150,7 +150,6 @@ def fit_fluid(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeLaw |
             "aicc power law": score["power law"],
             "aicc Newtonian": score["Newtonian"],
             **stages.diagnostics,
-            "rate_per_rpm_per_s": factor.per_s_per_rpm,
             "rate_source": factor.source,
         },
         rate_per_rpm_per_s=factor.per_s_per_rpm,

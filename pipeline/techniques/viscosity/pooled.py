@@ -110,6 +110,7 @@ def laws_of(
     specimen: Specimen,
     method: str,
     origins: tuple[Origin, ...],
+    temperature_K: float | None,
 ) -> tuple[Law, ...]:
     """Make the laws of a card: viscosity, and K and n of a power-law fluid each by itself.
 
@@ -143,6 +144,8 @@ def laws_of(
         parts=law.parts,
         rates=law.rates,
         degrees_of_freedom=dof,
+        temperature_K=temperature_K,
+        rate_per_rpm_per_s=law.rate_per_rpm_per_s,
     )
     if law.kind != POWER_LAW_FLUID:
         return (whole,)

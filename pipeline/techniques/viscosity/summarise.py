@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 
 from deamat.core.errors import FitRefused
 from deamat.core.records import Measurement, Specimen, Summary
@@ -46,18 +45,16 @@ def summarise(
         return Summary(summary.records, (), (*summary.refusals, refused))
     origins = next((r.origins for r in summary.records if r.key == VISCOSITY), ())
     method = windows[0].rule
-    law = replace(law, diagnostics={**law.diagnostics, **_temperature(specimens)})
-    return Summary(
-        summary.records, laws_of(law, levels, specimen, method, origins), summary.refusals
-    )
+    laws = laws_of(law, levels, specimen, method, origins, _temperature_K(specimens))
+    return Summary(summary.records, laws, summary.refusals)
 
 
-def _temperature(runs: Sequence[Specimen]) -> dict[str, float]:
-    """Mean temperature of the runs, where the register tells it of all of them `[K]`."""
+def _temperature_K(runs: Sequence[Specimen]) -> float | None:
+    """Mean temperature of the runs, where the register states it of all of them `[K]`."""
     stated = [s.numbers[_TEMPERATURE] for s in runs if _TEMPERATURE in s.numbers]
     if len(stated) < len(runs):
-        return {}
-    return {_TEMPERATURE: math.fsum(t.value for t in stated) / len(stated)}
+        return None
+    return math.fsum(t.value for t in stated) / len(stated)
 
 
 _TEMPERATURE = "temperature_K"

@@ -143,6 +143,7 @@ def measured(
     )
     if calibration > 0:
         budget += (Contribution("viscometer calibration", calibration, shared=True),)
+    rate = law.rate_per_rpm_per_s
     return MeasuredValue(
         key=asked.key,
         quantity=Quantity.from_budget(value, property_key(asked.key).unit, budget),
@@ -154,6 +155,7 @@ def measured(
             "law": law.name,
             "relative_error": law.relative_error,
             "degrees_of_freedom": law.dof,
+            **({} if rate is None else {"rate_per_rpm_per_s": rate}),
             **law.diagnostics,
         },
         flags=flags,

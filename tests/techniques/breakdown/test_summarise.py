@@ -175,10 +175,11 @@ def test_areas_and_rates_are_never_mixed_and_scaling_has_a_limit() -> None:
     assert strengths[0].diagnostics["area_scaling"] == (
         "E2 = E1 (A1/A2)^(1/shape) from A1 = 78.5 mm2, for A1/A2 of 0.25 to 4"
     )
-    assert strengths[0].diagnostics["area_ratio_limit"] == 4.0
+    assert strengths[0].area_ratio_limit == 4.0
     other = scale_to_area(strengths[0].quantity.value, 9.383, 78.5e-6, 314e-6, 4.0)
     assert other == pytest.approx(strengths[0].quantity.value * 0.25 ** (1 / 9.383))
     bare = records(fields(LAWLESS_I))[STRENGTH]
+    assert bare.area_ratio_limit is None
     assert str(bare.diagnostics["area_scaling"]).startswith("not possible: the register declares")
 
 

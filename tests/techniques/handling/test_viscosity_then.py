@@ -36,7 +36,7 @@ LAW = Law(
     valid=(HOUR, 12 * HOUR),
     conditions={},
     method="",
-    diagnostics={"temperature_K": 295.15},
+    temperature_K=295.15,
 )
 FLUID = replace(
     LAW, kind="power-law-fluid", coefficients=(100.0, 0.4),
@@ -108,7 +108,7 @@ def test_without_a_law_for_that_time_and_temperature_there_is_no_viscosity() -> 
         "the handling time, 6 h, lies outside the law of viscosity, 1 h to 5 h; measure viscosity "
         "as long"
     )
-    warm = replace(LAW, diagnostics={"temperature_K": 323.15})
+    warm = replace(LAW, temperature_K=323.15)
     assert reason(SIX_HOURS, {"viscosity": warm}) == (
         "the bed had 22 C and the law of viscosity is of 50 C; measure viscosity at the "
         "temperature of the bed"

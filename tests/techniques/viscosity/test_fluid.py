@@ -66,6 +66,7 @@ def test_k_and_n_come_out_as_such_each_with_its_law() -> None:
     assert set(laws) == {"viscosity", "flow_consistency", "flow_index"}
     whole = laws["viscosity"]
     assert whole.kind == "power-law-fluid"
+    assert {law.rate_per_rpm_per_s for law in laws.values()} == {0.09}
     assert sum(whole.parts) == len(whole.coefficients) == len(whole.covariance)
     joined = laws["flow_consistency"].coefficients + laws["flow_index"].coefficients
     assert joined == whole.coefficients

@@ -11,6 +11,7 @@ import pytest
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import OutOfRange
 from deamat.core.instruments import Machine
+from deamat.core.quantity import Quantity
 from deamat.core.records import Law, Measurement, Specimen
 from deamat.core.register import read_register
 from deamat.core.technique import Context
@@ -302,9 +303,21 @@ def test_several_runs_give_one_law_of_their_mean() -> None:
     assert levels == pytest.approx([0.98, 1.0, 1.02], abs=2e-3)
     assert law(HOUR).value == pytest.approx(4.19, rel=3e-3)
     assert 2 <= (law.degrees_of_freedom or 0.0) < 30
+    assert law.rate_per_rpm_per_s is None
     reordered = viscosity.TECHNIQUE.summarise(runs[::-1], CONTEXT)
     assert reordered.laws[0].coefficients == law.coefficients
     assert reordered.records == summary.records
+
+
+@pytest.mark.parametrize(("stated_K", "mean_K"), [((295.0, 297.0), 296.0), ((295.0,), None)])
+def test_a_law_has_the_mean_temperature_where_every_run_states_it(
+    stated_K: tuple[float, ...], mean_K: float | None
+) -> None:
+    runs = [reduce(newtonian(line(TIMES), TIMES, seed=i), number=i) for i in (1, 2)]
+    for i, kelvin in enumerate(stated_K):
+        numbers = {"temperature_K": Quantity(kelvin, "K")}
+        runs[i] = replace(runs[i], specimen=replace(runs[i].specimen, numbers=numbers))
+    assert viscosity.TECHNIQUE.summarise(runs, CONTEXT).laws[0].temperature_K == mean_K
 
 
 def test_the_intervals_hold_the_truth_of_a_single_run() -> None:
