@@ -41,6 +41,7 @@ _LAW = " (law)"
 
 # A part is made in the module that bears its technique's name.
 _MAKERS = {make.__module__.rpartition(".")[2]: make for make in PARTS}
+SIMULATED = tuple(key for key in TECHNIQUES if key in _MAKERS)
 
 Records = dict[tuple[str, str], list[PropertyRecord]]
 Laws = dict[str, dict[str, Law]]  # by material and property
@@ -90,7 +91,7 @@ def _config() -> Config:
 
 def answers(
     seed: int,
-    techniques: Collection[str] = tuple(TECHNIQUES),
+    techniques: Collection[str] = SIMULATED,
     materials: Collection[str] | None = None,
 ) -> list[Answer]:
     """Simulate one campaign, read it and hold every record and law against the truth.

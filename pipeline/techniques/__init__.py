@@ -1,4 +1,4 @@
-"""The rooms: one module per technique, and the one list of them."""
+"""The rooms: one folder per technique, and the one list of them."""
 
 from deamat.core.technique import AnyTechnique
 from deamat.techniques import (
@@ -12,11 +12,14 @@ from deamat.techniques import (
 )
 
 TECHNIQUES: dict[str, AnyTechnique] = {
-    "breakdown": breakdown.TECHNIQUE,
-    "compression": compression.TECHNIQUE,
-    "handling": handling.TECHNIQUE,
-    "nanoindentation": nanoindentation.TECHNIQUE,
-    "permittivity": permittivity.TECHNIQUE,
-    "tension": tension.TECHNIQUE,
-    "viscosity": viscosity.TECHNIQUE,
+    technique.key: technique
+    for technique in (
+        breakdown.TECHNIQUE,
+        compression.TECHNIQUE,
+        handling.TECHNIQUE,
+        nanoindentation.TECHNIQUE,
+        permittivity.TECHNIQUE,
+        tension.TECHNIQUE,
+        viscosity.TECHNIQUE,
+    )
 }
