@@ -9,6 +9,7 @@ from pathlib import Path
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from deamat.core.errors import RawFileError
+from deamat.core.slug import nearest_slug, slug_fault
 
 CAMPAIGN_FILE = "campaign.toml"
 MANIFEST_FILE = "MANIFEST.sha256"
@@ -66,9 +67,14 @@ def load_campaign(folder: Path) -> Campaign:
 
     Raises
     ------
-    RawFileError : it does not parse, or lacks a title, laboratory, licence or `synthetic`
+    RawFileError : it does not parse, or lacks a title, laboratory, licence or `synthetic`, or the
+        folder's name is no id
     """
     path = f"{folder.name}/{CAMPAIGN_FILE}"
+    if fault := slug_fault(folder.name):
+        near = nearest_slug(folder.name)
+        hint = f"the folder names the campaign: rename it, nearest valid: {near!r}"
+        raise RawFileError(path, fault, None, None, folder.name, hint)
     try:
         data = tomllib.loads((folder / CAMPAIGN_FILE).read_bytes().decode("utf-8"))
         info = CampaignInfo.model_validate(data)

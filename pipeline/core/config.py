@@ -11,10 +11,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
-from pydantic import BaseModel, Field, RootModel, ValidationError
+from pydantic import BaseModel, Field, RootModel, ValidationError, field_validator
 
 from deamat.core.errors import ConfigError
 from deamat.core.instruments import Declared, Instruments
+from deamat.core.slug import Spellings, nearest_slug, slug_fault
 
 M = TypeVar("M", bound=BaseModel)
 
@@ -31,6 +32,13 @@ class Exclusion(Declared):
     path: str = Field(description="relative to raw/, with forward slashes")
     reason: str = Field(min_length=3)
 
+    @field_validator("path")
+    @classmethod
+    def _below_raw(cls, path: str) -> str:
+        if path.startswith("/") or "\\" in path or {"..", ".", ""} & set(path.split("/")):
+            raise ValueError("a path relative to raw/ with forward slashes and without '..'")
+        return path
+
 
 class Exclusions(Declared):
     """`config/exclusions.toml`."""
@@ -40,6 +48,19 @@ class Exclusions(Declared):
 
 class _Materials(RootModel[Mapping[str, Material]]):
     """`config/materials.toml`: material id to what is known of it."""
+
+    @field_validator("root")
+    @classmethod
+    def _ids(cls, root: Mapping[str, Material]) -> Mapping[str, Material]:
+        spellings = Spellings()
+        for material in root:
+            if fault := slug_fault(material):
+                raise ValueError(
+                    f"the material {material!r}: {fault}; nearest valid: {nearest_slug(material)!r}"
+                )
+            if other := spellings.other("material", material, "this file"):
+                raise ValueError(f"the material {material!r} differs only in case from {other}")
+        return root
 
 
 @dataclass(frozen=True, slots=True)

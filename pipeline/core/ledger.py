@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
+
+from deamat.core.errors import RawFileError
 
 Status = Literal["used", "refused", "rejected", "excluded"]
 Role = Literal["recording", "register", "campaign", "manifest", "document", "unnamed", "missing"]
@@ -21,7 +23,8 @@ class FileEntry:
     status : `used` gave at least one value; `refused` was read and gave none; `rejected` could not
         be read for certain; `excluded` is named in `config/exclusions.toml`
     manifest : `ok`, or how it departs from the manifest: `changed`, `missing`, `extra`
-    reason, line, column : why, and where in the file
+    reason, line, column : why, and where in the file; of several bad rows one reason a line, and
+        the place of the first
     """
 
     path: str
@@ -33,6 +36,16 @@ class FileEntry:
     reason: str = ""
     line: int | None = None
     column: int | None = None
+
+    def rejected(self, *errors: RawFileError) -> FileEntry:
+        """Give the entry as rejected for these reasons, beside those that it is rejected for."""
+        reasons = [str(error) for error in errors]
+        if self.status == "rejected":
+            return replace(self, reason="\n".join([self.reason, *reasons]))
+        first = errors[0]
+        line, column = (first.line, first.column) if first.path == self.path else (None, None)
+        reason = "\n".join(reasons)
+        return replace(self, status="rejected", reason=reason, line=line, column=column)
 
     @property
     def violates(self) -> bool:

@@ -4,37 +4,33 @@ A technique whose register holds one row per observation declares another `Regis
 
 A column whose name ends in a known unit is a number (`diameter_mm` becomes `diameter_m`), and its
 `u_` twin is its standard uncertainty; the closed list of text columns is kept as text; any other
-column is a note. A column that starts like a quantity but ends in no known unit is an error.
+column is a note. A column that starts like a quantity but ends in no known unit is an error, and so
+is one that is nearly a known column. Every bad row is an error of its own; the others are read.
 """
 
 from __future__ import annotations
 
 import csv
-import difflib
 import io
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from deamat.core.errors import RawFileError
 from deamat.core.instruments import Gauge
 from deamat.core.quantity import Quantity
 from deamat.core.records import Condition, Specimen
-from deamat.core.units import UNITS, known, si_factor
+from deamat.core.register_columns import CONDITION_COLUMNS, Column, numeric_columns
+from deamat.core.slug import Spellings, label_fault, nearest_label, nearest_slug, slug_fault
 
 REGISTER_FILE = "specimens.csv"
 REGISTER_FILES = (REGISTER_FILE, "observations.csv")
 
-_CONDITIONS = ("age", "cure", "electrode")
-# Stems that always carry a unit: `diameter_furlong` is a slip, `curing_temperature` a note.
-_STEMS = (
-    "diameter", "height", "width", "thickness", "gauge_length", "speed", "temperature", "humidity",
-    "micrometer_force", "anvil_diameter", "plate_length", "plate_width", "electrode_area", "rate",
-    "breakdown_voltage", "breakdown_field", "tip_radius", "peak_load", "bed_temperature",
-    "time",
-)  # fmt: skip
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+_TINIEST, _LARGEST = 1e-30, 1e30  # in SI: no measured number is smaller or larger
+_LONGEST_SPECIMEN = 120
+_SHOWN = 80  # characters of a bad cell
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +44,7 @@ class RegisterForm:
     identity : columns (a text column, or a number by its SI name) whose cells name a row
     conditions : number by its SI name (`bed_temperature_K`) to the condition key that it gives
     whole : the rows hang together, so that one bad row spoils all of them
+    notes : further text columns that the technique reads where they are there
     """
 
     file: str = REGISTER_FILE
@@ -55,26 +52,18 @@ class RegisterForm:
     identity: tuple[str, ...] = ("specimen",)
     conditions: Mapping[str, str] = field(default_factory=dict)
     whole: bool = False
+    notes: tuple[str, ...] = ()
 
 
 SPECIMENS = RegisterForm()
 
 
 @dataclass(frozen=True, slots=True)
-class _Column:
-    """A numeric column: where it stands, its SI name, and how to convert it."""
-
-    index: int
-    header: str
-    name: str
-    unit: str
-    factor: float
-    offset: float
-
-
-@dataclass(frozen=True, slots=True)
 class Register:
-    """What a register gave: good rows, and bad rows each with its error."""
+    """What a register gave: good rows, and bad rows each with its error.
+
+    A register whose rows hang together gives no good row as soon as there is a bad one.
+    """
 
     specimens: tuple[Specimen, ...]
     errors: tuple[tuple[str | None, RawFileError], ...]  # (file the bad row names, why)
@@ -88,6 +77,7 @@ def read_register(
     required: Sequence[str],
     gauges: Mapping[str, Gauge],
     form: RegisterForm = SPECIMENS,
+    spellings: Spellings | None = None,
 ) -> Register:
     """Read a register's bytes into specimens.
 
@@ -97,203 +87,225 @@ def read_register(
     required : SI names of the columns that every row must fill (`diameter_m`)
     gauges : SI name without unit (`diameter`) to the gauge that read it
     form : what the technique declares of its register
+    spellings : of the names in the registers read before
 
     Raises
     ------
-    RawFileError : the header itself is unusable (no `specimen` column, unknown unit, ...), or a
-        row is bad in a register whose rows hang together
+    RawFileError : the header itself is unusable (no `specimen` column, unknown unit, ...)
     """
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise RawFileError(path, "a register must be UTF-8", mend="save it as UTF-8 CSV") from error
-    rows = csv.reader(io.StringIO(text, newline=""))
-    header = [h.strip() for h in next(rows, [])]
+        hint = "save it as UTF-8 CSV"
+        raise RawFileError(path, "a register must be UTF-8", None, None, None, hint) from error
+    rows = _rows(text, path)
+    header = [cell.strip() for cell in next(rows, (1, []))[1]]
     if not header:
         raise RawFileError(path, "an empty register")
-    columns = _columns(header, path, required, form)
+    columns = numeric_columns(header, path, required, form.text, form.notes)
+    reader = _Rows(path, campaign, technique, header, columns, required, gauges, form)
+    spellings = Spellings() if spellings is None else spellings
     specimens: list[Specimen] = []
     errors: list[tuple[str | None, RawFileError]] = []
     seen: dict[str, int] = {}
-    for row in rows:
-        line = rows.line_num
+    for line, row in rows:
         if not any(cell.strip() for cell in row):
             continue
         try:
-            specimen = _specimen(
-                row, line, header, columns, path, campaign, technique, required, gauges, form
-            )
-            if specimen.id in seen:
-                reason = f"the specimen stands in line {seen[specimen.id]} already"
-                raise RawFileError(path, reason, line, 1, specimen.id)
+            specimen = reader.specimen(row, line)
+            reader.spelt_once(specimen, seen, spellings)
         except RawFileError as error:
-            if form.whole:
-                raise
-            errors.append((_named_file(row, header, path), error))
+            errors.append((reader.named_file(row), error))
             continue
-        seen[specimen.id] = line
         specimens.append(specimen)
-    return Register(tuple(specimens), tuple(errors))
+    return Register(() if form.whole and errors else tuple(specimens), tuple(errors))
 
 
-def _columns(
-    header: list[str], path: str, required: Sequence[str], form: RegisterForm
-) -> dict[str, _Column]:
-    for name in form.text:
-        if name not in header:
-            mend = f"every row of this register says {' and '.join(form.text)}"
-            raise RawFileError(path, f"no column {name!r}", line=1, mend=mend)
-    for name in header:
-        if header.count(name) > 1:
-            raise RawFileError(path, "a column stands twice", 1, header.index(name) + 1, name)
-    columns: dict[str, _Column] = {}
-    for i, label in enumerate(header):
-        stem, unit = split_unit(label)
-        base = stem.removeprefix("u_")
-        if unit is None:
-            if any(base == s or base.startswith(s + "_") for s in _STEMS):
-                near = difflib.get_close_matches(base.rpartition("_")[2], UNITS, n=3)
-                raise RawFileError(
-                    path, "a quantity without a known unit in its column name", 1, i + 1, label,
-                    f"known units near it: {', '.join(near) or 'see docs/formats.md'}",
-                )  # fmt: skip
-            continue
-        si, factor, offset = si_factor(unit)
-        name = si_name(stem, si)
-        if name in columns:
-            raise RawFileError(path, f"{name} is given twice", 1, i + 1, label)
-        columns[name] = _Column(i, label, name, si, factor, offset)
-    for name in required:
-        if name not in columns:
-            stem = name.rpartition("_")[0]
-            raise RawFileError(path, f"no column for {stem}", 1, mend=f"add {stem}_<unit>")
-    for name in columns:
-        if name.startswith("u_") and name[2:] not in columns:
-            raise RawFileError(
-                path, "an uncertainty without its column", 1, columns[name].index + 1, name
-            )
-    return columns
+def _rows(text: str, path: str) -> Iterator[tuple[int, list[str]]]:
+    """Each row with the line that it ends in."""
+    rows = csv.reader(io.StringIO(text, newline=""))
+    try:
+        for row in rows:
+            yield rows.line_num, row
+    except csv.Error as error:
+        raise RawFileError(path, f"not CSV: {error}", rows.line_num) from error
 
 
-def split_unit(label: str) -> tuple[str, str | None]:
-    """Split `speed_mm_per_min` into `speed` and `mm_per_min`; None without a known unit."""
-    parts = label.split("_")
-    for i in range(1, len(parts)):
-        unit = "_".join(parts[i:])
-        if known(unit):  # either mu
-            return "_".join(parts[:i]), unit
-    return label, None
+@dataclass
+class _Rows:
+    """Reads the rows under one header; what many rows have in common is read once.
 
+    Parameters
+    ----------
+    quantities : by column and cells
+    sound : names that passed, by column
+    """
 
-def si_name(stem: str, si_unit: str) -> str:
-    """Name a column with its SI unit: `speed` in m/s is `speed_m_per_s`, a pure number is bare."""
-    return stem if si_unit == "1" else f"{stem}_{si_unit.replace('/', '_per_').replace('.', '')}"
+    path: str
+    campaign: str
+    technique: str
+    header: Sequence[str]
+    columns: Mapping[str, Column]
+    required: Sequence[str]
+    gauges: Mapping[str, Gauge]
+    form: RegisterForm
+    quantities: dict[tuple[str, str, str], Quantity] = field(default_factory=dict)
+    sound: set[tuple[str, str]] = field(default_factory=set)
 
+    def __post_init__(self) -> None:
+        """Find once which columns are numbers, make the id, and are notes."""
+        self.numbers = {n: c for n, c in self.columns.items() if not n.startswith("u_")}
+        self.twins = {n: self.columns.get(f"u_{n}") for n in self.numbers}
+        written = {name: column.header for name, column in self.columns.items()}
+        self.identity = [written.get(name, name) for name in self.form.identity]
+        taken = {"specimen", "material", "file", "format", *CONDITION_COLUMNS, *written.values()}
+        self.notes = [name for name in self.header if name not in taken]
 
-def _specimen(
-    row: list[str],
-    line: int,
-    header: list[str],
-    columns: Mapping[str, _Column],
-    path: str,
-    campaign: str,
-    technique: str,
-    required: Sequence[str],
-    gauges: Mapping[str, Gauge],
-    form: RegisterForm,
-) -> Specimen:
-    if len(row) != len(header):
-        raise RawFileError(
-            path, f"{len(row)} fields where the header has {len(header)}", line, len(row)
+    def specimen(self, row: list[str], line: int) -> Specimen:
+        """Read one row.
+
+        Raises
+        ------
+        RawFileError : a field too many or too few, a cell that is not what its column says
+        """
+        if len(row) != len(self.header):
+            reason = f"{len(row)} fields where the header has {len(self.header)}"
+            raise RawFileError(self.path, reason, line, len(row))
+        cells = {name: cell.strip() for name, cell in zip(self.header, row, strict=True)}
+        numbers: dict[str, Quantity] = {}
+        for name, column in self.numbers.items():
+            if cells[column.header]:
+                numbers[name] = self._quantity(name, column, cells, line)
+            elif name in self.required:
+                raise RawFileError(self.path, "must not be empty", line, column.index + 1, "")
+        self._check_names(cells, line)
+        conditions: dict[str, Condition] = {k: cells[k] for k in CONDITION_COLUMNS if cells.get(k)}
+        for name, key in self.form.conditions.items():
+            if name in numbers:
+                conditions[key] = numbers[name].value
+        return Specimen(
+            id=" ".join(cells[column] for column in self.identity if cells.get(column)),
+            material=cells["material"],
+            campaign=self.campaign,
+            technique=self.technique,
+            file=self._below(cells["file"]) if cells.get("file") else None,
+            format=cells.get("format") or None,
+            numbers=numbers,
+            conditions=conditions,
+            notes={name: cells[name] for name in self.notes if cells[name]},
+            register=self.path,
+            line=line,
         )
-    cells = {name: cell.strip() for name, cell in zip(header, row, strict=True)}
-    numbers: dict[str, Quantity] = {}
-    for name, column in columns.items():
-        if name.startswith("u_"):
-            continue
-        cell = cells[column.header]
-        if not cell:
-            if name in required:
-                raise RawFileError(path, "must not be empty", line, column.index + 1, "")
-            continue
-        value = column.factor * _number(cell, path, line, column) + column.offset
+
+    def _check_names(self, cells: Mapping[str, str], line: int) -> None:
+        for name in self.form.text:
+            if not cells[name]:
+                raise self._slip(name, cells, line, f"no {name}")
+        for name in ("material", *CONDITION_COLUMNS):
+            text = cells.get(name, "")
+            if (name, text) in self.sound or not text:
+                continue
+            if name == "material":
+                fault, near = slug_fault(text), nearest_slug(text)
+            else:
+                fault, near = label_fault(text), nearest_label(text)
+            if fault:
+                raise self._slip(name, cells, line, fault, near)
+        if fault := _specimen_fault(cells.get("specimen", "")):
+            near = nearest_label(re.sub(r"[/\\]", "-", cells["specimen"]), _LONGEST_SPECIMEN)
+            raise self._slip("specimen", cells, line, fault, near.lstrip(".-"))
+        file = cells.get("file", "")
+        if file.startswith("/") or ".." in file.split("/") or "\\" in file:
+            raise self._slip(
+                "file", cells, line, "a file is named relative to its register's folder"
+            )
+
+    def _slip(
+        self, name: str, cells: Mapping[str, str], line: int, reason: str, near: str = ""
+    ) -> RawFileError:
+        value = cells[name] if len(cells[name]) <= _SHOWN else cells[name][:_SHOWN] + "..."
+        hint = f"nearest valid: {near!r}" if near else ""
+        return RawFileError(self.path, reason, line, self.header.index(name) + 1, value, hint)
+
+    def spelt_once(self, specimen: Specimen, seen: dict[str, int], spellings: Spellings) -> None:
+        """Refuse a row that stands twice, and a name that differs from another only in its case.
+
+        Parameters
+        ----------
+        seen : ids of the rows before, folded, to their lines
+        """
+        line = specimen.line
+        first = seen.setdefault(specimen.id.casefold(), line)
+        if first != line:
+            reason = f"the specimen stands in line {first} already"
+            raise RawFileError(self.path, reason, line, 1, specimen.id)
+        for name in ("material", *CONDITION_COLUMNS):
+            text = specimen.material if name == "material" else specimen.conditions.get(name)
+            if not isinstance(text, str) or (name, text) in self.sound:
+                continue
+            kind = name if name == "material" else f"{self.campaign} {name}"
+            if other := spellings.other(kind, text, f"{self.path}, line {line}"):
+                hint = "write it as there: names that differ only in case or spaces are one name"
+                at = self.header.index(name) + 1
+                reason = f"{name} is spelt otherwise: {other}"
+                raise RawFileError(self.path, reason, line, at, text, hint)
+            self.sound.add((name, text))
+
+    def named_file(self, row: list[str]) -> str | None:
+        """The file that a bad row names, as far as it can be told."""
+        if "file" not in self.header or len(row) <= self.header.index("file"):
+            return None
+        file = row[self.header.index("file")].strip()
+        return self._below(file) if file else None
+
+    def _below(self, file: str) -> str:
+        return f"{self.path.rpartition('/')[0]}/{file}"
+
+    def _quantity(self, name: str, column: Column, cells: Mapping[str, str], line: int) -> Quantity:
+        cell, twin = cells[column.header], self.twins[name]
+        u_cell = cells[twin.header] if twin else ""
+        found = self.quantities.get((name, cell, u_cell))
+        if found is not None:
+            return found
+        value = column.factor * self._number(cell, line, column) + column.offset
+        needed = name in self.required
         # a time counts from an event, so zero is one; a length of zero is a slip
-        if name in required and (value < 0 or (value == 0 and column.unit != "s")):
-            raise RawFileError(path, "must be positive", line, column.index + 1, cell)
+        if (value < 0 and (needed or column.positive)) or (
+            value == 0 and (column.positive or (needed and column.unit != "s"))
+        ):
+            raise RawFileError(self.path, "must be positive", line, column.index + 1, cell)
         if column.unit == "K" and value < 0:
             raise RawFileError(
-                path, "a temperature below absolute zero", line, column.index + 1, cell,
+                self.path, "a temperature below absolute zero", line, column.index + 1, cell,
                 "leave the cell empty where it was not recorded",
             )  # fmt: skip
-        numbers[name] = _with_uncertainty(name, value, column, columns, cells, path, line, gauges)
-    numeric = {c.header for c in columns.values()}
-    taken = numeric | {"specimen", "material", "file", "format", *_CONDITIONS}
-    for name in form.text:
-        if not cells[name]:
-            raise RawFileError(path, f"no {name}", line, header.index(name) + 1, "")
-    folder = path.rpartition("/")[0]
-    file = cells.get("file") or None
-    if file and (file.startswith("/") or ".." in file.split("/") or "\\" in file):
-        raise RawFileError(
-            path, "a file is named relative to its register's folder", line,
-            header.index("file") + 1, file,
-        )  # fmt: skip
-    conditions: dict[str, Condition] = {k: cells[k] for k in _CONDITIONS if cells.get(k)}
-    conditions |= {key: numbers[k].value for k, key in form.conditions.items() if k in numbers}
-    written = {name: column.header for name, column in columns.items()}
-    named = [written.get(name, name) for name in form.identity]
-    return Specimen(
-        id=" ".join(cells[column] for column in named if cells.get(column)),
-        material=cells["material"],
-        campaign=campaign,
-        technique=technique,
-        file=f"{folder}/{file}" if file else None,
-        format=cells.get("format") or None,
-        numbers=numbers,
-        conditions=conditions,
-        notes={k: v for k, v in cells.items() if v and k not in taken},
-        register=path,
-        line=line,
-    )
+        stem = name.rpartition("_")[0]
+        of_length = Gauge() if column.unit == "m" else None
+        gauge = self.gauges.get(stem, of_length)
+        u_own = gauge.u_reading_m if gauge else 0.0
+        if twin and u_cell:
+            u_own = twin.factor * self._number(u_cell, line, twin)
+            if u_own < 0:
+                reason = "an uncertainty below zero"
+                raise RawFileError(self.path, reason, line, twin.index + 1, u_cell)
+        found = Quantity(value, column.unit, u_own, gauge.u_calibration_m if gauge else 0.0)
+        self.quantities[name, cell, u_cell] = found
+        return found
+
+    def _number(self, cell: str, line: int, column: Column) -> float:
+        if not _NUMBER.fullmatch(cell):
+            hint = "write it with a decimal point"
+            raise RawFileError(self.path, "not a number", line, column.index + 1, cell, hint)
+        value = float(cell)
+        if not math.isfinite(value) or abs(column.factor * value) > _LARGEST:
+            raise RawFileError(self.path, "too large for a number", line, column.index + 1, cell)
+        if value != 0 and abs(column.factor * value) < _TINIEST:
+            raise RawFileError(self.path, "too small for a number", line, column.index + 1, cell)
+        return value
 
 
-def _number(cell: str, path: str, line: int, column: _Column) -> float:
-    if not _NUMBER.fullmatch(cell):
-        raise RawFileError(
-            path, "not a number", line, column.index + 1, cell, "write it with a decimal point"
-        )
-    value = float(cell)
-    if not math.isfinite(value):
-        raise RawFileError(path, "too large for a number", line, column.index + 1, cell)
-    return value
-
-
-def _with_uncertainty(
-    name: str,
-    value: float,
-    column: _Column,
-    columns: Mapping[str, _Column],
-    cells: Mapping[str, str],
-    path: str,
-    line: int,
-    gauges: Mapping[str, Gauge],
-) -> Quantity:
-    stem = name.rpartition("_")[0]
-    gauge = gauges[stem] if stem in gauges else Gauge() if column.unit == "m" else None
-    u_own = gauge.u_reading_m if gauge else 0.0
-    twin = columns.get(f"u_{name}")
-    if twin and cells[twin.header]:
-        u_own = twin.factor * _number(cells[twin.header], path, line, twin)
-        if u_own < 0:
-            raise RawFileError(
-                path, "an uncertainty below zero", line, twin.index + 1, cells[twin.header]
-            )
-    return Quantity(value, column.unit, u_own, gauge.u_calibration_m if gauge else 0.0)
-
-
-def _named_file(row: list[str], header: list[str], path: str) -> str | None:
-    """The file that a bad row names, as far as it can be told."""
-    if "file" not in header or len(row) <= header.index("file"):
-        return None
-    file = row[header.index("file")].strip()
-    return f"{path.rpartition('/')[0]}/{file}" if file else None
+def _specimen_fault(text: str) -> str | None:
+    """Say what keeps a text from naming a specimen; it may stand in addresses and exports."""
+    if text.startswith(".") or "/" in text or "\\" in text:
+        return "a specimen's name must not be a path"
+    return label_fault(text, _LONGEST_SPECIMEN)

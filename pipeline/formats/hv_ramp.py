@@ -37,7 +37,7 @@ from dataclasses import dataclass, replace
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import RawFileError
 from deamat.core.records import Recording
-from deamat.core.register import split_unit
+from deamat.core.register_columns import split_unit
 from deamat.core.units import known, si_factor
 from deamat.formats.cells import Dialect, looks_numeric
 from deamat.formats.columns import Reader

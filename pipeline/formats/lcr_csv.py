@@ -39,7 +39,7 @@ from collections.abc import Sequence
 
 from deamat.core.errors import RawFileError
 from deamat.core.records import Recording
-from deamat.core.register import split_unit
+from deamat.core.register_columns import split_unit
 from deamat.core.units import known, si_factor
 from deamat.formats.cells import Dialect
 from deamat.formats.format import Format

@@ -21,6 +21,7 @@ from deamat.actuator.present import (
 )
 from deamat.actuator.request import Request
 from deamat.core.errors import ConfigError
+from deamat.core.slug import file_stem
 from deamat.core.units import from_si, read_quantity
 from deamat.materials.card import MaterialCard, read_card
 from deamat.materials.database import open_database
@@ -72,7 +73,7 @@ def run_design(
         from deamat.report import design as draw
 
         film = f"films of {from_si(request.de_thickness_m, 'um'):.4g} um"
-        name = f"design-{request.de}-on-{request.passive}"
+        name = file_stem("design", request.de, "on", request.passive, longest=100)
         drawn = [
             *draw.curvature_figure(figures, f"{name}-curvature", found),
             *draw.tornado_figure(figures, f"{name}-tornado", found),

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from deamat.core.present import readable_conditions
 from deamat.core.records import Measurement, Summary
+from deamat.core.slug import file_stem, short_slug
 from deamat.run.book import STALE
 from deamat.run.measure import Bench, Group
 from deamat.techniques import TECHNIQUES
@@ -46,13 +47,10 @@ def figure_jobs(
         if TECHNIQUES[g.technique].figure is None or (g.summary is None and g.key != STALE):
             continue
         said = readable_conditions(dict(g.conditions)) if g.conditions else ""
-        slug = "-".join(
-            [g.material, g.technique, *said.split(", ")] if said else [g.material, g.technique]
-        )
         name = bench.config.name_of(g.material)
         title = f"{name}, {g.technique}" + (f", {said}" if said else "")
         job = FigureJob(
-            f"{g.campaign}/{slug.replace(' ', '-')}", title, synthetic[g.campaign], g.technique,
+            f"{g.campaign}/{_stem(g)}", title, synthetic[g.campaign], g.technique,
             g.measurements, (g.summary,) if g.summary else (), (),
         )  # fmt: skip
         yield job, {g.subject: g.key, "about": f"{title} {synthetic[g.campaign]}"}
@@ -66,6 +64,16 @@ def figure_jobs(
             )  # fmt: skip
             about = f"{synthetic[campaign]} {sorted(names.items())}"
             yield job, {**{g.subject: g.key for g in mine}, "about": about}
+
+
+def _stem(group: Group) -> str:
+    """Name the figure of a group by ids and by its conditions in short."""
+    if not group.conditions:
+        return file_stem(group.material, group.technique)
+    values = " ".join(str(value) for _, value in group.conditions)
+    return file_stem(
+        group.material, group.technique, short_slug(values, repr(sorted(group.conditions)))
+    )
 
 
 def _gives_moduli(group: Group) -> bool:

@@ -13,6 +13,7 @@ from deamat.core.campaign import find_campaigns
 from deamat.core.config import Config, load_config
 from deamat.core.errors import ConfigError
 from deamat.core.ledger import FileEntry, Provenance
+from deamat.core.slug import Spellings
 from deamat.run.book import Book, key_of
 from deamat.run.contents import contents_id
 from deamat.run.describe import describe
@@ -102,6 +103,9 @@ def look_at_raw(
     if not folders.raw.is_dir():
         raise ConfigError(f"no folder {folders.raw}; give one with --raw")
     found, left_alone = find_campaigns(folders.raw)
+    spellings = Spellings()
+    for material in config.materials:
+        spellings.other("material", material, "config/materials.toml")
     surveys = []
     for folder in found:
         prefix = f"raw/{folder.name}/"
@@ -113,6 +117,7 @@ def look_at_raw(
                 {path[4:]: hashes[path] for path in mine},
                 TECHNIQUES,
                 config,
+                spellings,
             )
         )
     return surveys, left_alone

@@ -34,6 +34,8 @@ def register(raw: Path, campaign: str, accept: bool) -> Registration:
     RawFileError : the manifest that is there cannot be read
     """
     folder = raw / campaign
+    if folder.parent != raw or campaign in ("", ".", ".."):
+        raise ConfigError(f"{campaign!r} is not the name of a folder in {raw}")
     if not (folder / CAMPAIGN_FILE).is_file():
         raise ConfigError(f"{folder} is no campaign: it has no {CAMPAIGN_FILE}")
     manifest = folder / MANIFEST_FILE

@@ -27,7 +27,9 @@ def text(document: Mapping[str, Any]) -> str:
     )
     lines += _some("refused", _refusals(document["refused"]))
     lines += _some("no reader", [f"{w['reason']}: {w['files']} files" for w in document["waiting"]])
-    lines += _some("REJECTED", [r["reason"] for r in document["rejected"]])
+    lines += _some(
+        "REJECTED", [line for r in document["rejected"] for line in r["reason"].split("\n")]
+    )
     lines += _some("MANIFEST", [_violation(m) for m in document["manifest"]])
     lines += _some("excluded", [f"{e['path']}: {e['reason']}" for e in document["excluded"]])
     lines += _some("warning", document["warnings"])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import difflib
 import io
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -16,6 +16,7 @@ from deamat.core.ledger import FileEntry, Role
 from deamat.core.manifest import Difference, compare, parse_manifest
 from deamat.core.records import Specimen
 from deamat.core.register import REGISTER_FILES, read_register
+from deamat.core.slug import Spellings
 from deamat.core.technique import AnyTechnique
 from deamat.formats.documentation import stated_units
 
@@ -45,12 +46,14 @@ def survey(
     hashes: Mapping[str, str],
     techniques: Mapping[str, AnyTechnique],
     config: Config,
+    spellings: Spellings,
 ) -> Survey:
     """Account for every file of one campaign folder.
 
     Parameters
     ----------
     sizes, hashes : path relative to `raw/` to size and sha256, of this campaign's files
+    spellings : of the names in the configuration and in the campaigns surveyed before
     """
     result = Survey(None)
     difference, broken = _manifest(folder, hashes)
@@ -66,7 +69,11 @@ def survey(
             )
     _exclude(result, config)
     try:
-        result.campaign = load_campaign(folder)
+        campaign = load_campaign(folder)
+        if other := spellings.other("campaign", folder.name, "raw/"):
+            reason = f"the folder of another campaign differs only in case: {other}"
+            raise RawFileError(f"{folder.name}/{CAMPAIGN_FILE}", reason)
+        result.campaign = campaign
     except RawFileError as error:
         _blame(result, error)
         for path, entry in result.entries.items():
@@ -79,7 +86,7 @@ def survey(
     result.stated_units = stated_units("\n".join(texts))
     for path, entry in sorted(result.entries.items()):
         if entry.role == "register" and entry.status != "excluded":
-            _register(path, folder, result, techniques, config)
+            _register(path, folder, result, techniques, config, spellings)
     _unnamed(result, folder, techniques)
     return result
 
@@ -143,10 +150,7 @@ def _exclude(result: Survey, config: Config) -> None:
 
 def _blame(result: Survey, error: RawFileError) -> None:
     """Mark a file as rejected, with the place and reason of an error."""
-    entry = result.entries[error.path]
-    result.entries[error.path] = replace(
-        entry, status="rejected", reason=str(error), line=error.line, column=error.column
-    )
+    result.entries[error.path] = result.entries[error.path].rejected(error)
 
 
 def _register(
@@ -155,6 +159,7 @@ def _register(
     result: Survey,
     techniques: Mapping[str, AnyTechnique],
     config: Config,
+    spellings: Spellings,
 ) -> None:
     name = path.split("/")[1]
     data = (folder.parent / path).read_bytes()
@@ -177,7 +182,7 @@ def _register(
             )
         register = read_register(
             data, path, folder.name, name, techniques[name].required, config.instruments.gauges,
-            form,
+            form, spellings,
         )  # fmt: skip
     except RawFileError as error:
         _blame(result, error)
@@ -189,15 +194,23 @@ def _register(
                 )  # fmt: skip
         return
     owners: dict[str, Specimen] = {}
+    slips = list(register.errors)
     for specimen in register.specimens:
-        if _claim(specimen, result, owners):
-            result.specimens.append(specimen)
-    for named, slip in register.errors:
-        _blame_row(named, slip, result)
+        try:
+            if _claim(specimen, result, owners):
+                result.specimens.append(specimen)
+        except RawFileError as error:
+            slips.append((None, error))
+    _blame_rows(path, slips, owners, result)
 
 
 def _claim(specimen: Specimen, result: Survey, owners: dict[str, Specimen]) -> bool:
-    """Give a row its file, once; say whether the row can be measured."""
+    """Give a row its file, once; say whether the row can be measured.
+
+    Raises
+    ------
+    RawFileError : the file is that of another row
+    """
     path = specimen.file
     if path is None:
         return True
@@ -209,35 +222,44 @@ def _claim(specimen: Specimen, result: Survey, owners: dict[str, Specimen]) -> b
         return False
     entry = result.entries[path]
     if entry.role == "missing":
+        reason = f"{entry.reason}\nnamed in {place}, but not there"
+        result.entries[path] = replace(entry, reason=reason)
         return False
     if path in owners:
         first = owners[path]
-        _blame_row(None, RawFileError(
-            specimen.register, f"its file is that of {first.id} in line {first.line} already",
-            specimen.line, value=specimen.id,
-        ), result)  # fmt: skip
-        return False
+        reason = f"its file is that of {first.id} in line {first.line} already"
+        raise RawFileError(specimen.register, reason, specimen.line, None, specimen.id)
     owners[path] = specimen
     result.entries[path] = replace(entry, role="recording")
     return entry.status != "excluded"
 
 
-def _blame_row(named: str | None, error: RawFileError, result: Survey) -> None:
-    """A bad row: its data file is rejected, or the register itself where it names none."""
-    if named in result.entries and named is not None:
-        entry = result.entries[named]
-        if entry.status != "excluded":
-            result.entries[named] = replace(
-                entry, role="recording", status="rejected", reason=str(error)
-            )
-        return
-    _blame(result, error)
+def _blame_rows(
+    register: str,
+    slips: Sequence[tuple[str | None, RawFileError]],
+    owners: Mapping[str, Specimen],
+    result: Survey,
+) -> None:
+    """Reject the data file of each bad row, or the register where that is none of its own."""
+    by_file: dict[str, list[RawFileError]] = {}
+    for named, slip in slips:
+        own = named is not None and named in result.entries and named not in owners
+        by_file.setdefault(named if own and named else register, []).append(slip)
+    for path, errors in by_file.items():
+        entry = result.entries[path]
+        if entry.status == "excluded":
+            continue
+        role: Role = "register" if path == register else "recording"
+        result.entries[path] = replace(entry.rejected(*errors), role=role)
 
 
 def _files_named(data: bytes, path: str) -> list[str]:
     """The files that a register names, read without understanding the rest of it."""
     text = data.decode("utf-8-sig", "replace")
-    rows = list(csv.reader(io.StringIO(text, newline="")))
+    try:
+        rows = list(csv.reader(io.StringIO(text, newline="")))
+    except csv.Error:
+        return []
     if not rows or "file" not in [h.strip() for h in rows[0]]:
         return []
     at = [h.strip() for h in rows[0]].index("file")

@@ -74,9 +74,13 @@ def test_a_bad_row_is_named_and_the_rest_is_read(old: str, new: str, message: st
         ("u_diameter_mm", "u_width_mm", "line 1, column 5: an uncertainty without its column"),
         ("height_mm", "height", "line 1, column 6: a quantity without a known unit"),
         ("material", "stuff", "line 1: no column 'material'"),
-        ("cup", "age", "line 1, column 7: a column stands twice"),
-        ("height_mm", "diameter_um", "line 1, column 6: diameter_m is given twice"),
-        ("height_mm", "colour", "line 1: no column for height; add height_<unit>"),
+        ("cup", "age", "line 1, column 8: duplicate column: column 7 has the same name"),
+        (
+            "height_mm",
+            "diameter_um",
+            "line 1, column 6: duplicate column: column 4 is the same quantity",
+        ),
+        ("height_mm", "colour", "line 1: no column for height; add height_mm"),
     ],
 )
 def test_a_header_that_cannot_be_used(old: str, new: str, message: str) -> None:
@@ -147,9 +151,9 @@ def test_a_row_may_be_an_observation_named_by_its_cells() -> None:
     ],
 )
 def test_one_bad_row_spoils_a_register_whose_rows_hang_together(row: str, message: str) -> None:
-    with pytest.raises(RawFileError) as caught:
-        _observations(f"m,a,22,0.5,1,none,\n{row}\nm,a,22,2,4,gap,\n")
-    assert str(caught.value) == f"demo/handling/observations.csv, {message}"
+    register = _observations(f"m,a,22,0.5,1,none,\n{row}\nm,a,22,2,4,gap,\n")
+    assert register.specimens == ()
+    assert [str(e) for _, e in register.errors] == [f"demo/handling/observations.csv, {message}"]
 
 
 def test_a_note_may_begin_like_a_mass() -> None:
@@ -157,3 +161,84 @@ def test_a_note_may_begin_like_a_mass() -> None:
     assert specimen.notes == {"mass_flow": "150 ml"}
     (specimen,) = _read(_GOOD.replace("cup", "mass_g").replace("150 ml", "100")).specimens
     assert specimen.numbers["mass_kg"].value == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize("cell", ["0", "0.0", "-12"])
+@pytest.mark.parametrize(("column", "header"), [(4, "diameter_mm"), (5, "height_mm")])
+def test_a_length_of_zero_or_less_is_named(column: int, header: str, cell: str) -> None:
+    row = ["a", "m", "a.csv", "28", "12"]
+    row[column - 1] = cell
+    register = _read("specimen,material,file,diameter_mm,height_mm\n" + ",".join(row) + "\n")
+    assert header == ["specimen", "material", "file", "diameter_mm", "height_mm"][column - 1]
+    assert register.specimens == ()
+    (error,) = (e for _, e in register.errors)
+    assert (error.line, error.column, error.value) == (2, column, cell)
+    assert error.reason == "must be positive"
+
+
+def test_a_length_of_zero_is_a_slip_where_nobody_needs_it_too() -> None:
+    rows = "a,m,28,12,0\nb,m,28,12,\nc,m,28,12,5\n"
+    register = _read("specimen,material,diameter_mm,height_mm,thickness_um\n" + rows)
+    assert [s.id for s in register.specimens] == ["b", "c"]
+    assert [(e.line, e.column, e.reason) for _, e in register.errors] == [
+        (2, 5, "must be positive")
+    ]
+
+
+@pytest.mark.parametrize(
+    ("cell", "reason"),
+    [
+        ("1e300", "too large for a number"),
+        ("9" * 400, "too large for a number"),
+        ("1e-320", "too small for a number"),
+    ],
+)
+def test_a_number_that_nobody_measured(cell: str, reason: str) -> None:
+    register = _read(_GOOD.replace(",28,", f",{cell},"))
+    assert [(e.line, e.column, e.reason) for _, e in register.errors] == [(2, 4, reason)]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "column", "reason", "nearest"),
+    [
+        ("a,m,", "a,EF30/1:1 10% BT,", 2, "not '/'", "ef30-1-1-10-bt"),
+        ("a,m,", "a,../../../../escaped,", 2, "not '/'", "escaped"),
+        ("a,m,", "a,EF30,", 2, "lower-case letter or a digit", "ef30"),
+        ("a,m,", f"a,{'m' * 300},", 2, "300 characters where 80", "m" * 80),
+        ("a,m,", "../a,m,", 1, "must not be a path", "a"),
+        ("a,m,", "a\u202e1,m,", 1, "RIGHT-TO-LEFT OVERRIDE", "a1"),
+        ("after cure", "after\u00a0cure", 7, "NO-BREAK SPACE", "after cure"),
+    ],
+)
+def test_a_name_that_breaks_its_rule_is_rejected_with_the_nearest(
+    old: str, new: str, column: int, reason: str, nearest: str
+) -> None:
+    register = _read(_GOOD.replace(old, new, 1))
+    (error,) = (e for _, e in register.errors)
+    assert (error.path, error.line, error.column) == (_PATH, 2, column)
+    assert reason in error.reason
+    assert f"nearest valid: {nearest!r}" in str(error)
+    assert len(str(error)) < 320
+
+
+def test_names_that_differ_only_in_case_are_one_name() -> None:
+    first, *rest = _GOOD.splitlines()[1:] * 4
+    rows = [
+        first,
+        rest[0].replace("a,m,", "A,m,"),
+        rest[1].replace("a,m,", "c,m-5K,"),
+        rest[2].replace("a,m,", "d,m-5k,").replace("after cure", "After  cure"),
+        first.replace("a,m,", "e,m,").replace("after cure", "After  cure"),
+    ]
+    register = _read("\n".join([_GOOD.splitlines()[0], *rows, ""]))
+    assert [s.id for s in register.specimens] == ["a", "c"]
+    assert [(e.line, e.column, e.reason) for _, e in register.errors] == [
+        (3, 1, "the specimen stands in line 2 already"),
+        (5, 2, f"material is spelt otherwise: 'm-5K' in {_PATH}, line 4"),
+        (6, 7, f"age is spelt otherwise: 'after cure' in {_PATH}, line 2"),
+    ]
+
+
+def test_a_field_that_is_too_long_for_csv_is_named() -> None:
+    with pytest.raises(RawFileError, match="line 2: not CSV: field larger than field limit"):
+        _read(_GOOD.replace("150 ml", "x" * 200_000))

@@ -36,15 +36,16 @@ def folders(tmp_path: Path) -> Folders:
 
 @pytest.fixture
 def quick_figures(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Write words instead of drawing: for tests that are not about figures."""
+    """Draw nothing: for tests that are not about figures."""
+    monkeypatch.setattr(deamat.run.draw, "draw_one", write_words)
 
-    def words(folder: Path, job: FigureJob) -> None:
-        for name in job.files:
-            path = folder.parent / name
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(f"SYNTHETIC {job.title} {len(job.measurements)}")
 
-    monkeypatch.setattr(deamat.run.draw, "draw_one", words)
+def write_words(folder: Path, job: FigureJob) -> None:
+    """Write words where a figure would be drawn."""
+    for name in job.files:
+        path = folder.parent / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(f"SYNTHETIC {job.title} {len(job.measurements)}")
 
 
 def small_campaign(folder: Path) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from deamat.core.config import load_config
+from deamat.core.slug import Spellings
 from deamat.run.survey import Survey, survey
 from deamat.techniques import TECHNIQUES
 from deamat.twin.handling import handling_part
@@ -28,6 +29,7 @@ def look(folder: Path, contents: Mapping[str, bytes]) -> Survey:
         {name: hashlib.sha256(data).hexdigest() for name, data in names.items()},
         TECHNIQUES,
         load_config(ROOT / "config", {t.key: t.config for t in TECHNIQUES.values()}),
+        Spellings(),
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from deamat.core.register import RegisterForm
 from deamat.core.technique import Technique
 from deamat.techniques.breakdown.config import VERSION, YIELDS, BreakdownConfig
 from deamat.techniques.breakdown.figure import figure
@@ -26,6 +27,7 @@ TECHNIQUE = Technique(
     reduce=reduce,
     summarise=summarise,
     figure=figure,
+    register=RegisterForm(notes=("censored",)),
 )
 
 __all__ = ["TECHNIQUE", "BreakdownConfig"]

@@ -36,5 +36,6 @@ TECHNIQUE = Technique(
         identity=("material", *RUN_COLUMNS, "bed_temperature_K", "time_s", "line"),
         conditions={"bed_temperature_K": "temperature_K"},
         whole=True,
+        notes=(*RUN_COLUMNS, "line", "limit"),
     ),
 )

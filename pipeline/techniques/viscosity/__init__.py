@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from deamat.core.register import RegisterForm
 from deamat.core.technique import Technique
 from deamat.techniques.viscosity.config import VERSION, YIELDS, ViscosityConfig
 from deamat.techniques.viscosity.figure import figure
@@ -19,4 +20,5 @@ TECHNIQUE = Technique(
     reduce=reduce,
     summarise=summarise,
     figure=figure,
+    register=RegisterForm(notes=("mixed_at", "sample")),
 )
