@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sqlite3
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -12,9 +13,10 @@ import click
 
 from deamat import __version__
 from deamat.core.errors import PipelineError, RawFileError
+from deamat.run.boundary import attempt
 from deamat.run.folders import Folders
 
-WELL, REJECTED, WRONG = 0, 1, 2
+WELL, REJECTED, WRONG, INTERNAL, STOPPED = 0, 1, 2, 3, 4
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -23,6 +25,8 @@ Exit codes:
   0  all well (a refused value is reported and is well)
   1  a file was rejected or a manifest is violated, and no exclusion names it
   2  wrong usage or configuration
+  3  an internal error: what it concerns is left out, all the rest is published
+  4  stopped by the machine (disk full, folder that cannot be written): nothing new is published
 """
 
 
@@ -298,9 +302,29 @@ def _silent(stage: str, done: int, total: int) -> None:
 
 
 def main() -> None:
-    """Run the command; a mistake in usage or configuration ends with code 2 and a sentence."""
+    """Run the command; whatever ends it early ends it with a sentence and its exit code."""
+    command = " ".join(sys.argv[1:2])
+    try:
+        failure = attempt("command", command, (), _run)
+    except (OSError, sqlite3.Error) as error:  # of the machine, not of the command
+        click.echo(f"deamat: {_sentence(error)}; nothing new is published", err=True)
+        sys.exit(STOPPED)
+    if failure is not None:
+        click.echo(failure.traceback, err=True, nl=False)
+        click.echo(f"deamat: internal error in {failure}; nothing new is published", err=True)
+        sys.exit(INTERNAL)
+
+
+def _run() -> None:
+    """Run the command; an error of the project ends it with a sentence."""
     try:
         cli()
     except PipelineError as error:
         click.echo(f"deamat: {error}", err=True)
         sys.exit(REJECTED if isinstance(error, RawFileError) else WRONG)
+
+
+def _sentence(error: OSError | sqlite3.Error) -> str:
+    if isinstance(error, OSError) and error.strerror:
+        return f"{error.filename}: {error.strerror}" if error.filename else error.strerror
+    return str(error)

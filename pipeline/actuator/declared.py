@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Literal, TypeVar
@@ -14,6 +13,7 @@ from deamat.actuator.strain import InPlane
 from deamat.core.config import validate
 from deamat.core.errors import ConfigError
 from deamat.core.instruments import Declared
+from deamat.core.toml import parse_toml
 from deamat.core.units import to_si
 
 DESIGNS_FILE = "designs.toml"
@@ -150,7 +150,7 @@ def load_designs(folder: str | Path) -> Designs:
     if not path.is_file():
         raise ConfigError(f"no {path}: a design needs its electrode, tolerances and model declared")
     try:
-        document = tomllib.loads(path.read_text("utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        document = parse_toml(path.read_bytes())
+    except ValueError as error:
         raise ConfigError(f"{path}: {error}") from error
     return validate(Designs, document, path)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from deamat.core.errors import RawFileError
 from deamat.core.slug import nearest_slug, slug_fault
+from deamat.core.toml import parse_toml
 
 CAMPAIGN_FILE = "campaign.toml"
 MANIFEST_FILE = "MANIFEST.sha256"
@@ -76,10 +76,11 @@ def load_campaign(folder: Path) -> Campaign:
         hint = f"the folder names the campaign: rename it, nearest valid: {near!r}"
         raise RawFileError(path, fault, None, None, folder.name, hint)
     try:
-        data = tomllib.loads((folder / CAMPAIGN_FILE).read_bytes().decode("utf-8"))
-        info = CampaignInfo.model_validate(data)
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        data = parse_toml((folder / CAMPAIGN_FILE).read_bytes())
+    except ValueError as error:
         raise RawFileError(path, f"not valid TOML: {error}") from error
+    try:
+        info = CampaignInfo.model_validate(data)
     except ValidationError as error:
         said = "; ".join(f"{'.'.join(map(str, e['loc']))}: {e['msg']}" for e in error.errors())
         raise RawFileError(

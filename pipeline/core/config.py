@@ -5,7 +5,6 @@ from __future__ import annotations
 import difflib
 import hashlib
 import json
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +15,7 @@ from pydantic import BaseModel, Field, RootModel, ValidationError, field_validat
 from deamat.core.errors import ConfigError
 from deamat.core.instruments import Declared, Instruments
 from deamat.core.slug import Spellings, nearest_slug, slug_fault
+from deamat.core.toml import parse_toml
 
 M = TypeVar("M", bound=BaseModel)
 
@@ -116,8 +116,8 @@ def load_config(folder: Path, techniques: Mapping[str, type[BaseModel]]) -> Conf
         data = path.read_bytes()
         files[name] = hashlib.sha256(data).hexdigest()
         try:
-            return tomllib.loads(data.decode("utf-8"))
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+            return parse_toml(data)
+        except ValueError as error:
             raise ConfigError(f"{path}: {error}") from error
 
     sections = read("methods.toml")

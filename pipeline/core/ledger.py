@@ -7,7 +7,7 @@ from typing import Literal
 
 from deamat.core.errors import RawFileError
 
-Status = Literal["used", "refused", "rejected", "excluded"]
+Status = Literal["used", "refused", "rejected", "excluded", "failed"]
 Role = Literal["recording", "register", "campaign", "manifest", "document", "unnamed", "missing"]
 
 
@@ -21,7 +21,8 @@ class FileEntry:
     sha256 : of its bytes, empty for a file that is missing
     role : what it is to its campaign; `unnamed` is a data file that no register names
     status : `used` gave at least one value; `refused` was read and gave none; `rejected` could not
-        be read for certain; `excluded` is named in `config/exclusions.toml`
+        be read for certain; `excluded` is named in `config/exclusions.toml`; `failed` met an
+        internal error of the program, which a `Failure` describes
     manifest : `ok`, or how it departs from the manifest: `changed`, `missing`, `extra`
     reason, line, column : why, and where in the file; of several bad rows one reason a line, and
         the place of the first
@@ -51,6 +52,28 @@ class FileEntry:
     def violates(self) -> bool:
         """Say whether this entry alone makes the run end with a non-zero status."""
         return self.status != "excluded" and (self.status == "rejected" or self.manifest != "ok")
+
+
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """An internal error: one unit of work ended in something that no project error foresaw.
+
+    Parameters
+    ----------
+    stage, subject : the unit, as `deamat explain` calls it
+    error : its kind and message, in one line
+    traceback : for whoever looks for the fault in the program
+    files : raw files that the unit rests on, relative to `raw/`
+    """
+
+    stage: str
+    subject: str
+    error: str
+    traceback: str
+    files: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return f"{self.stage} {self.subject} ({self.error})"
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,7 +18,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 from deamat.core.errors import CardError, PipelineError
-from deamat.core.ledger import FileEntry, Provenance
+from deamat.core.ledger import Failure, FileEntry, Provenance
 from deamat.core.schema import entry_of
 from deamat.materials.card import MaterialCard
 from deamat.materials.rows import card_of, columns_of, entries_of, owned_of
@@ -29,6 +29,7 @@ from deamat.materials.tables import (
     TABLES,
     VERSION,
     card_rows,
+    failure_rows,
     file_rows,
     listed_in,
     provenance_rows,
@@ -79,7 +80,11 @@ class MissingMaterial(PipelineError, KeyError):
 
 
 def write_database(
-    path: Path, cards: Sequence[MaterialCard], files: Sequence[FileEntry], provenance: Provenance
+    path: Path,
+    cards: Sequence[MaterialCard],
+    files: Sequence[FileEntry],
+    provenance: Provenance,
+    failures: Sequence[Failure] = (),
 ) -> None:
     """Write a fresh database; the order of the arguments' elements plays no part.
 
@@ -92,6 +97,7 @@ def write_database(
     cards : one for each material
     files : the account of every file under `raw/`
     provenance : what made the cards
+    failures : internal errors of the run that made them
 
     Raises
     ------
@@ -114,6 +120,7 @@ def write_database(
         inserts = _inserts(connection)
         connection.executemany(inserts["release"], provenance_rows(provenance))
         connection.executemany(inserts["files"], file_rows(files))
+        connection.executemany(inserts["failures"], failure_rows(failures))
         ids = count(1)
         for card in sorted(cards, key=lambda card: card.material):
             for table, row in card_rows(card.to_document(), ids):
@@ -219,6 +226,14 @@ class Database(Mapping[str, MaterialCard]):
     def files(self) -> tuple[FileEntry, ...]:
         """Give the account of every file under `raw/`, by path."""
         return tuple(FileEntry(*row) for row in self._rows("SELECT * FROM files ORDER BY path"))
+
+    def failures(self) -> tuple[Failure, ...]:
+        """Give the internal errors of the run that made this release, by stage and subject."""
+        rows = self._rows("SELECT * FROM failures ORDER BY stage, subject")
+        return tuple(
+            Failure(stage, subject, error, traceback, tuple(json.loads(files)))
+            for stage, subject, error, traceback, files in rows
+        )
 
     def provenance(self) -> Provenance:
         """Say which code, environment and configuration made this release."""

@@ -14,7 +14,7 @@ from dataclasses import astuple
 from functools import cache
 from typing import Any
 
-from deamat.core.ledger import FileEntry, Provenance
+from deamat.core.ledger import Failure, FileEntry, Provenance
 from deamat.core.schema import Field, Mark, document_of, entry_of, fields_of
 from deamat.materials.card import MaterialCard
 from deamat.materials.document import Document, canonical_json
@@ -31,6 +31,10 @@ CREATE TABLE files (
     path TEXT PRIMARY KEY, sha256 TEXT NOT NULL, size INTEGER NOT NULL, role TEXT NOT NULL,
     status TEXT NOT NULL, manifest TEXT NOT NULL, reason TEXT NOT NULL,
     line INTEGER, "column" INTEGER
+) STRICT, WITHOUT ROWID;
+CREATE TABLE failures (
+    stage TEXT, subject TEXT, error TEXT NOT NULL, traceback TEXT NOT NULL, files TEXT NOT NULL,
+    PRIMARY KEY (stage, subject)
 ) STRICT, WITHOUT ROWID;
 """
 
@@ -103,6 +107,13 @@ def provenance_rows(provenance: Provenance) -> list[Row]:
 def file_rows(files: Iterable[FileEntry]) -> list[Row]:
     """Give the rows of `files`, by path."""
     return [astuple(entry) for entry in sorted(files, key=lambda entry: entry.path)]
+
+
+def failure_rows(failures: Iterable[Failure]) -> list[Row]:
+    """Give the rows of `failures`, by stage and subject."""
+    return sorted(
+        (f.stage, f.subject, f.error, f.traceback, canonical_json(list(f.files))) for f in failures
+    )
 
 
 def card_rows(card: Document, ids: Iterator[int]) -> Iterator[tuple[str, Row]]:

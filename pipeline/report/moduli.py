@@ -67,6 +67,11 @@ def modulus_bars(
     return tuple(bar for _, bar in sorted(bars.values(), key=lambda pair: pair[0]))
 
 
+def is_modulus(key: str) -> bool:
+    """Say whether the values of a property have bars in the figure."""
+    return key in _MODULI
+
+
 def _identity(item: PropertyRecord | Refusal) -> tuple[str, str, Condition | None]:
     return item.material, item.key, item.conditions.get("age")
 

@@ -40,15 +40,16 @@ def run_all(
             raise ConfigError(f"no folder {folder}; give one with {what}")
     with State(folders.processed) as state:
         seen = look(folders)
+        document: dict[str, Any] = json.loads(state.read_note("document") or "{}")
         places = json.dumps([str(folders.raw.resolve()), str(folders.config.resolve())])
         if (
             not verify
+            and not document.get("internal_errors")  # what failed is tried again
             and state.read_note("places") == places
             and state.read_note("installed") == installed()
             and state.unchanged(seen)
             and intact(folders.processed, state.read_note("published"))
         ):
-            document: dict[str, Any] = json.loads(state.read_note("document") or "{}")
             return {**document, "nothing_to_do": True}
         from deamat.run.process import process  # numpy, pydantic: only when there is work
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 from collections import Counter
 from dataclasses import asdict
 from typing import Any
 
+from deamat.core.errors import PipelineError
 from deamat.core.ledger import FileEntry
 from deamat.run import run_all
 from deamat.run.folders import Folders, look
@@ -16,11 +18,11 @@ def audit(folders: Folders) -> dict[str, Any]:
 
     The document holds `exit_code`, `files` (one entry each) and `unaccounted`, which must be empty.
     """
-    from deamat.materials.database import open_database
-
     document = run_all(folders, 1, lambda *_: None, verify=True)
-    with open_database(folders.processed) as database:
-        entries = list(database.files())
+    account = folders.processed / "audit" / "files.json"
+    if not account.is_file():
+        raise PipelineError(f"the last run could not write {account}; `deamat all` says why")
+    entries = [FileEntry(**entry) for entry in json.loads(account.read_bytes())]
     campaigns = {c["name"] for c in document["campaigns"]}
     there = {
         path.removeprefix("raw/")
@@ -33,6 +35,7 @@ def audit(folders: Folders) -> dict[str, Any]:
         "release": document["release"],
         "files": [asdict(e) for e in entries],
         "manifest": document["manifest"],
+        "internal_errors": document["internal_errors"],
         "left_alone": document["left_alone"],
         "unaccounted": sorted(there - set(counts)),
         "twice": sorted(path for path, n in counts.items() if n > 1),
@@ -56,6 +59,11 @@ def audit_text(document: dict[str, Any]) -> str:
     ):
         if wanted:
             lines += ["", f"{title}:", *(f"  {_line(e)}" for e in wanted)]
+    if document["internal_errors"]:
+        lines += ["", "internal errors:"]
+        for e in document["internal_errors"]:
+            lines += [f"  {e['stage']} {e['subject']} ({', '.join(e['files'])})"]
+            lines += [f"    {line}" for line in (e["traceback"] or e["error"]).splitlines()]
     for what in ("unaccounted", "twice"):
         lines += [f"{what}: {path}" for path in document[what]]
     if document["left_alone"]:

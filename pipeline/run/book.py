@@ -77,6 +77,11 @@ class Book:
         self.state.remember(stage, subject, key, components, pickle.dumps(result, protocol=5))
         return key
 
+    def drop(self, stage: str, subject: str) -> None:
+        """Forget what was made of a subject: its making failed, so the next run tries again."""
+        self._asked.setdefault(stage, set()).add(subject)
+        self.state.forget(stage, [subject])
+
     def result(self, stage: str, subject: str) -> Any:
         """Give what was made of a subject in an earlier run."""
         return pickle.loads(self.state.result(stage, subject))

@@ -4,39 +4,35 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import Any, get_args
 
-from deamat.core.config import Config
 from deamat.core.ledger import FileEntry, Status
-from deamat.run.book import Book
-from deamat.run.folders import Folders
-from deamat.run.measure import Group
-from deamat.run.survey import Survey
+from deamat.run.measure import Bench, Group
+
+FAILURE = 3  # the exit code of a run with an internal error
 
 
 def describe(
-    folders: Folders,
-    config: Config,
-    surveys: Sequence[Survey],
+    bench: Bench,
     groups: Sequence[Group],
     files: Sequence[FileEntry],
     left_alone: Sequence[str],
-    book: Book,
     release: str,
 ) -> dict[str, Any]:
     """Say what was read, fitted, refused and rejected, and whether all is well."""
     summaries = [g.summary for g in groups if g.summary]
     counts = Counter(f.status for f in files)
     return {
-        "exit_code": int(any(f.violates for f in files)),
-        "raw": str(folders.raw),
+        "exit_code": FAILURE if bench.failures else int(any(f.violates for f in files)),
+        "raw": str(bench.folders.raw),
         "campaigns": [
             {
                 "name": s.campaign.name,
                 "synthetic": s.campaign.info.synthetic,
                 "specimens": len(s.specimens),
             }
-            for s in surveys
+            for s in bench.surveys
             if s.campaign
         ],
         "left_alone": list(left_alone),
@@ -62,14 +58,15 @@ def describe(
         ],
         "manifest": _manifest(files),
         "excluded": [{"path": f.path, "reason": f.reason} for f in files if f.status == "excluded"],
+        "internal_errors": [asdict(failure) for failure in bench.failures],
         "warnings": [
             f"config/exclusions.toml names {e.path}, which is not there"
-            for e in config.exclusions.exclude
+            for e in bench.config.exclusions.exclude
             if e.path not in {f.path for f in files}
         ],
-        "redone": [str(r) for r in book.redone],
+        "redone": [str(r) for r in bench.book.redone],
         "release": release,
-        "cards": str(folders.processed / "cards"),
+        "cards": str(bench.folders.processed / "cards"),
     }
 
 

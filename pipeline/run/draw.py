@@ -7,11 +7,15 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
+from deamat.core.ledger import Failure
 from deamat.core.present import readable_conditions
 from deamat.core.records import Measurement, Summary
 from deamat.core.slug import file_stem, short_slug
+from deamat.report.moduli import is_modulus, modulus_bars
 from deamat.run.book import STALE
+from deamat.run.boundary import attempt, killed
 from deamat.run.measure import Bench, Group
+from deamat.run.work import source_of
 from deamat.techniques import TECHNIQUES
 
 
@@ -37,6 +41,13 @@ class FigureJob:
         """What it publishes."""
         return [f"figures/{self.name}.svg", f"figures/{self.name}.png"]
 
+    @property
+    def rests_on(self) -> tuple[str, ...]:
+        """The raw files behind what it shows."""
+        origins = [o for s in self.summaries for r in s.records for o in r.origins]
+        files = [source_of(m.specimen) for m in self.measurements]
+        return tuple(dict.fromkeys([*files, *(o.path or o.register for o in origins)]))
+
 
 def figure_jobs(
     groups: Sequence[Group], bench: Bench
@@ -44,7 +55,7 @@ def figure_jobs(
     """List every figure with the components it depends on."""
     synthetic = {s.campaign.name: s.campaign.info.synthetic for s in bench.surveys if s.campaign}
     for g in groups:
-        if TECHNIQUES[g.technique].figure is None or (g.summary is None and g.key != STALE):
+        if TECHNIQUES[g.technique].figure is None or not _has_something_to_draw(g):
             continue
         said = readable_conditions(dict(g.conditions)) if g.conditions else ""
         name = bench.config.name_of(g.material)
@@ -56,7 +67,7 @@ def figure_jobs(
         yield job, {g.subject: g.key, "about": f"{title} {synthetic[g.campaign]}"}
     for campaign in sorted({g.campaign for g in groups}):
         mine = [g for g in groups if g.campaign == campaign and _gives_moduli(g)]
-        if mine:
+        if any(map(_has_moduli, mine)):
             names = {g.material: bench.config.name_of(g.material) for g in mine}
             job = FigureJob(
                 f"{campaign}/moduli", f"Moduli, {campaign}", synthetic[campaign], None, (),
@@ -77,24 +88,46 @@ def _stem(group: Group) -> str:
 
 
 def _gives_moduli(group: Group) -> bool:
-    return any(_is_modulus(key) for key in TECHNIQUES[group.technique].yields)
+    return any(is_modulus(key) for key in TECHNIQUES[group.technique].yields)
 
 
-def _is_modulus(key: str) -> bool:
-    return key.endswith("_modulus")
+def _has_something_to_draw(group: Group) -> bool:
+    """Say whether a group was summarised from a value or a curve; may be."""
+    return group.key == STALE or (
+        group.summary is not None
+        and any(m.values or any(map(len, m.curve.values())) for m in group.measurements)
+    )
 
 
-def draw_all(jobs: Sequence[FigureJob], folder: Path, bench: Bench) -> None:
-    """Draw figures into a folder."""
-    drawn = bench.workers.map(partial(draw_one, folder), jobs)
-    for done, _ in enumerate(drawn, start=1):
+def _has_moduli(group: Group) -> bool:
+    """Say whether a group has a modulus to draw, or to say of that it was refused; may have."""
+    s = group.summary
+    return group.key == STALE or (
+        s is not None
+        and any(map(is_modulus, [*(r.key for r in s.records), *(r.key for r in s.refusals)]))
+    )
+
+
+def draw_all(jobs: Sequence[FigureJob], folder: Path, bench: Bench) -> Iterator[Failure]:
+    """Draw figures into a folder; give what went wrong."""
+    drawn = bench.workers.map(partial(_attempt, folder), jobs, _lost)
+    for done, failure in enumerate(drawn, start=1):
         bench.progress("figures", done, len(jobs))
+        if failure is not None:
+            yield failure
+
+
+def _attempt(folder: Path, job: FigureJob) -> Failure | None:
+    return attempt("figure", job.name, job.rests_on, partial(draw_one, folder, job))
+
+
+def _lost(job: FigureJob) -> Failure:
+    return killed("figure", job.name, job.rests_on)
 
 
 def draw_one(folder: Path, job: FigureJob) -> None:
     """Draw one figure as SVG and PNG."""
     from deamat.report.figures import moduli_figure, technique_figure  # matplotlib
-    from deamat.report.moduli import modulus_bars
 
     place = folder / job.name
     place.parent.mkdir(parents=True, exist_ok=True)

@@ -10,15 +10,17 @@ from typing import TypeVar
 from deamat.core.config import Config
 from deamat.core.config import digest as config_digest
 from deamat.core.instruments import Machine
+from deamat.core.ledger import Failure
 from deamat.core.properties import REFERENCE_AGE
 from deamat.core.quantity import Quantity
 from deamat.core.records import Condition, Law, Measurement, PropertyRecord, Specimen, Summary
 from deamat.core.technique import AnyTechnique, Context
 from deamat.run.book import STALE, Book, digest, key_of
+from deamat.run.boundary import FAILED, attempt
 from deamat.run.folders import Folders
 from deamat.run.stages import Stages
 from deamat.run.survey import Survey
-from deamat.run.work import FILES_PER_TASK, Reduced, Task, reduce_one
+from deamat.run.work import FILES_PER_TASK, Reduced, Task, attempt_one, lost, source_of
 from deamat.run.workers import Workers
 
 E = TypeVar("E", PropertyRecord, Law)
@@ -27,11 +29,17 @@ Progress = Callable[[str, int, int], None]
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """One specimen, the key of what it was made from, and what came of it (None if stale yet)."""
+    """One specimen, the key of what it was made from, and what came of it.
+
+    Parameters
+    ----------
+    reduced : None where a dry run does not know it yet, or where it failed
+    """
 
     specimen: Specimen
     key: str
     reduced: Reduced | None
+    failure: Failure | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +60,11 @@ class Group:
         said = ",".join(f"{k}={v}" for k, v in self.conditions)
         return f"{self.campaign}/{self.technique}/{self.material}" + (f"[{said}]" if said else "")
 
+    @property
+    def files(self) -> tuple[str, ...]:
+        """The raw files that it rests on."""
+        return tuple(dict.fromkeys(source_of(m.specimen) for m in self.measurements))
+
 
 @dataclass
 class Bench:
@@ -62,6 +75,7 @@ class Bench:
     records, laws : by campaign and material, of the techniques that came before
     stale : those among them that a dry run only knows from an earlier run
     unmade : campaign, material and key of what there will be, and a dry run knows nothing of
+    failures : internal errors so far
     """
 
     folders: Folders
@@ -76,6 +90,13 @@ class Bench:
     laws: dict[tuple[str, str], list[Law]] = field(default_factory=dict)
     stale: list[PropertyRecord | Law] = field(default_factory=list)
     unmade: set[tuple[str, str, str]] = field(default_factory=set)
+    failures: list[Failure] = field(default_factory=list)
+
+    def fail(self, failure: Failure) -> str:
+        """Note an internal error; returns what stands for the key of the thing not made."""
+        self.failures.append(failure)
+        self.book.drop(failure.stage, failure.subject)
+        return FAILED
 
     def sure(self, entries: Iterable[E]) -> list[E]:
         """Keep the records or laws that a dry run knows to be as they will be."""
@@ -108,6 +129,9 @@ def measure(technique: AnyTechnique, bench: Bench) -> list[Measured]:
             measured.append(Measured(task.specimen, STALE, None))
         else:
             reduced = next(made)
+            if isinstance(reduced, Failure):
+                measured.append(Measured(task.specimen, bench.fail(reduced), None, reduced))
+                continue
             key = bench.book.keep("measurement", subject, parts, reduced)
             measured.append(Measured(task.specimen, key, reduced))
     return measured
@@ -147,17 +171,24 @@ def summarise(technique: AnyTechnique, measured: Sequence[Measured], bench: Benc
             else:
                 bench.unmade |= {(*place, property_) for property_ in technique.yields}
         else:
-            summary = (
-                technique.summarise(good, Context(config, Machine(), {}, laws=laws))
-                if good
-                else None
-            )
-            key = bench.book.keep("summary", bare.subject, parts, summary)
+            context = Context(config, Machine(), {}, laws=laws)
+            made = _summary(technique, bare, context) if good else None
+            if isinstance(made, Failure):
+                summary, key = None, bench.fail(made)
+            else:
+                summary, key = made, bench.book.keep("summary", bare.subject, parts, made)
         result.append(Group(campaign, material, technique.key, conditions, key, good, summary))
         if summary:
             bench.records.setdefault(place, []).extend(summary.records)
             bench.laws.setdefault(place, []).extend(summary.laws)
     return result
+
+
+def _summary(technique: AnyTechnique, group: Group, context: Context) -> Summary | Failure:
+    return attempt(
+        "summary", group.subject, group.files,
+        lambda: technique.summarise(group.measurements, context),
+    )  # fmt: skip
 
 
 def _laws(technique: AnyTechnique, laws: Sequence[Law]) -> dict[str, Law]:
@@ -188,7 +219,7 @@ def _tasks(technique: AnyTechnique, bench: Bench) -> Iterator[tuple[str, dict[st
                 registered=entry is None or entry.manifest != "extra",
                 ends_open=info.ends_open, stated_units=survey.stated_units,
             )  # fmt: skip
-            subject = f"{specimen.campaign}/{specimen.technique}/{specimen.id}"
+            subject = task.subject
             parts = {
                 "register row": digest(specimen),
                 "config": config_digest(config),
@@ -221,10 +252,12 @@ def _needed(key: str, specimen: Specimen, records: Sequence[PropertyRecord]) -> 
     return same[0].quantity if len(same) == 1 else None
 
 
-def _run(technique: AnyTechnique, tasks: Sequence[Task], bench: Bench) -> Iterator[Reduced]:
+def _run(
+    technique: AnyTechnique, tasks: Sequence[Task], bench: Bench
+) -> Iterator[Reduced | Failure]:
     """Work through the tasks, in this process where they are few."""
     bench.progress(technique.key, 0, len(tasks))
-    results = bench.workers.map(reduce_one, tasks, FILES_PER_TASK)
+    results = bench.workers.map(attempt_one, tasks, lost, FILES_PER_TASK)
     for done, reduced in enumerate(results, start=1):
         bench.progress(technique.key, done, len(tasks))
         yield reduced

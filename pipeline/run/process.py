@@ -6,15 +6,17 @@ import hashlib
 import platform
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from deamat import __version__
 from deamat.core.campaign import find_campaigns
 from deamat.core.config import Config, load_config
 from deamat.core.errors import ConfigError
-from deamat.core.ledger import FileEntry, Provenance
+from deamat.core.ledger import Failure, FileEntry, Provenance
 from deamat.core.slug import Spellings
 from deamat.run.book import Book, key_of
+from deamat.run.boundary import attempt
 from deamat.run.contents import contents_id
 from deamat.run.describe import describe
 from deamat.run.folders import Folders, Stat, locate
@@ -24,7 +26,8 @@ from deamat.run.published import listing
 from deamat.run.release import Release
 from deamat.run.stages import Stages, find_stages
 from deamat.run.state import State
-from deamat.run.survey import Survey, survey
+from deamat.run.survey import Survey, failed, survey, without_survey
+from deamat.run.work import source_of
 from deamat.run.workers import Workers
 from deamat.techniques import TECHNIQUES
 
@@ -67,11 +70,11 @@ def process(
     """
     hashes = hash_inputs(seen, folders, state, verify)
     config = load_config(folders.config, {t.key: t.config for t in TECHNIQUES.values()})
-    surveys, left_alone = look_at_raw(folders, seen, hashes, config)
+    surveys, broken, left_alone = look_at_raw(folders, seen, hashes, config)
     book = Book(state)
     stages = find_stages(TECHNIQUES, hashes, state)
     with Workers(workers) as pool:
-        bench = Bench(folders, config, stages, surveys, book, pool, progress, dry)
+        bench = Bench(folders, config, stages, surveys, book, pool, progress, dry, failures=broken)
         groups: list[Group] = []
         measured: list[Measured] = []
         for technique in in_order(TECHNIQUES):
@@ -90,7 +93,7 @@ def process(
         book.close()
         name = contents_id(release.building)
         place = release.publish(name)
-    document = describe(folders, config, surveys, groups, files, left_alone, book, name)
+    document = describe(bench, groups, files, left_alone, name)
     state.remember_inputs(seen, hashes)
     state.note("published", listing(place))
     return document
@@ -98,7 +101,7 @@ def process(
 
 def look_at_raw(
     folders: Folders, seen: Mapping[str, Stat], hashes: Mapping[str, str], config: Config
-) -> tuple[list[Survey], list[str]]:
+) -> tuple[list[Survey], list[Failure], list[str]]:
     """Survey every campaign; name what is no campaign."""
     if not folders.raw.is_dir():
         raise ConfigError(f"no folder {folders.raw}; give one with --raw")
@@ -106,21 +109,22 @@ def look_at_raw(
     spellings = Spellings()
     for material in config.materials:
         spellings.other("material", material, "config/materials.toml")
-    surveys = []
+    surveys: list[Survey] = []
+    broken: list[Failure] = []
     for folder in found:
         prefix = f"raw/{folder.name}/"
         mine = [path for path in seen if path.startswith(prefix)]
-        surveys.append(
-            survey(
-                folder,
-                {path[4:]: seen[path].size for path in mine},
-                {path[4:]: hashes[path] for path in mine},
-                TECHNIQUES,
-                config,
-                spellings,
-            )
-        )
-    return surveys, left_alone
+        sizes = {path[4:]: seen[path].size for path in mine}
+        sums = {path[4:]: hashes[path] for path in mine}
+        done = attempt(
+            "survey", folder.name, sorted(sizes),
+            partial(survey, folder, sizes, sums, TECHNIQUES, config, spellings),
+        )  # fmt: skip
+        if isinstance(done, Failure):
+            broken.append(done)
+            done = without_survey(done, sizes, sums, TECHNIQUES)
+        surveys.append(done)
+    return surveys, broken, left_alone
 
 
 def _account(surveys: list[Survey], measured: list[Measured]) -> list[FileEntry]:
@@ -128,6 +132,9 @@ def _account(surveys: list[Survey], measured: list[Measured]) -> list[FileEntry]
     entries = {path: e for survey in surveys for path, e in survey.entries.items()}
     for one in measured:
         path, reduced = one.specimen.file, one.reduced
+        if one.failure is not None:
+            path = source_of(one.specimen)
+            entries[path] = failed(entries[path], one.failure)
         if reduced is None:
             continue
         if reduced.error is not None:

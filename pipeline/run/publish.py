@@ -7,15 +7,19 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
+from typing import TypeVar
 
-from deamat.core.ledger import FileEntry, Provenance
+from deamat.core.ledger import Failure, FileEntry, Provenance
 from deamat.materials.card import Credit, MaterialCard
 from deamat.materials.curves import write_curves
 from deamat.materials.database import write_database
 from deamat.run.book import STALE, Redo, digest, key_of
+from deamat.run.boundary import FAILED, attempt
 from deamat.run.draw import FigureJob, draw_all, figure_jobs
 from deamat.run.measure import Bench, Group
 from deamat.run.release import Release
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +35,8 @@ class Press:
         subject: str,
         parts: Mapping[str, str],
         names: Sequence[str],
-        write: Callable[[Release], None],
+        write: Callable[[Release], Sequence[Failure]],
+        rests_on: Sequence[str] = (),
         runs: str = "",
     ) -> str:
         """Make the files `names` unless they are there already; return their key.
@@ -39,6 +44,8 @@ class Press:
         Parameters
         ----------
         parts : what the files are made from, beside the code of the stage
+        write : makes them, and says what failed on the way; what it raises is a failure as well
+        rests_on : raw files, to be named if it fails
         runs : the stage's name among `bench.stages` where it is not `stage`
         """
         parts = {**parts, **self.bench.stages.parts(runs or stage)}
@@ -49,7 +56,15 @@ class Press:
             if self.release.keep(*names):
                 return key_of(parts)
             self.bench.book.redone.append(Redo(stage, subject, "its output is not as it was"))
-        write(self.release)
+        failures = attempt(stage, subject, rests_on, partial(write, self.release))
+        if isinstance(failures, Failure):
+            self.release.drop(*names)
+            failures = [failures]
+        for failure in failures:
+            self.bench.fail(failure)
+        if failures:
+            self.bench.book.drop(stage, subject)
+            return FAILED
         return self.bench.book.keep(stage, subject, parts, None)
 
 
@@ -62,44 +77,109 @@ def publish(
 ) -> None:
     """Write everything that is published; what did not change is kept from the release before."""
     press = Press(bench, release)
+    cards, keys = _cards(groups, press)
+    _figures(groups, press)
+    simulated = {s.campaign.name for s in bench.surveys if s.campaign and s.campaign.info.synthetic}
+    press.make(
+        "curves", "curves.h5",
+        {**{g.subject: g.key for g in groups}, "synthetic": ", ".join(sorted(simulated))},
+        ["curves.h5"],
+        lambda r: all_but_culprits(
+            "curves", {g.subject: (g, g.files) for g in groups},
+            lambda some: write_curves(
+                r.path("curves.h5"), [m for g in some for m in g.measurements],
+                synthetic_campaigns=simulated,
+            ),
+        ),
+    )  # fmt: skip
+    press.make(
+        "database", "materials.sqlite",
+        {
+            **keys, "files": digest(tuple(files)), "provenance": digest(provenance),
+            "failures": digest(tuple(bench.failures)),
+        },
+        ["materials.sqlite"],
+        lambda r: all_but_culprits(
+            "database", {card.material: (card, _files_of(card)) for card in cards},
+            lambda some: write_database(
+                r.path("materials.sqlite"), some, files, provenance, bench.failures
+            ),
+        ),
+    )  # fmt: skip
+    press.make(
+        "audit", "files.json", {"files": digest(tuple(files))}, ["audit/files.json"],
+        lambda r: _write(r.path("audit/files.json"), _as_json(files)),
+    )  # fmt: skip
+    if bench.failures:  # last: it tells of all the others
+        press.make(
+            "audit", "internal_errors.json", {"failures": digest(tuple(bench.failures))},
+            ["audit/internal_errors.json"],
+            lambda r: _write(r.path("audit/internal_errors.json"), _as_json(bench.failures)),
+        )  # fmt: skip
+
+
+def all_but_culprits(
+    stage: str,
+    items: Mapping[str, tuple[T, Sequence[str]]],
+    write: Callable[[Sequence[T]], None],
+) -> list[Failure]:
+    """Write a file of many items; where that fails, find those that do alone, and leave them out.
+
+    Parameters
+    ----------
+    items : subject to the item and the raw files that it rests on
+    write : makes the whole file of some items
+    """
+    every = [item for item, _ in items.values()]
+    whole = attempt(stage, "of all", (), partial(write, every))
+    if not isinstance(whole, Failure):
+        return []
+    alone = {
+        subject: attempt(stage, subject, files, partial(write, [item]))
+        for subject, (item, files) in items.items()
+    }
+    failures = [f for f in alone.values() if isinstance(f, Failure)]
+    write([item for subject, (item, _) in items.items() if alone[subject] is None])
+    return failures
+
+
+def _cards(groups: Sequence[Group], press: Press) -> tuple[list[MaterialCard], dict[str, str]]:
+    """Make the card of each material; gives those that could be made, and the key of each."""
     by_material: dict[str, list[Group]] = {}
     for group in groups:
         by_material.setdefault(group.material, []).append(group)
     cards: list[MaterialCard] = []
     keys: dict[str, str] = {}
-    for material, mine in sorted(by_material.items()):
-        card = _card(material, mine, bench)
-        cards.append(card)
-        keys[f"card {material}"] = press.make(
-            "card", material, _card_parts(card, mine), [f"cards/{material}.json"], _writes(card)
-        )
-        bench.progress("cards", len(cards), len(by_material))
-    simulated = {s.campaign.name for s in bench.surveys if s.campaign and s.campaign.info.synthetic}
-    press.make(
-        "database", "materials.sqlite",
-        {**keys, "files": digest(tuple(files)), "provenance": digest(provenance)},
-        ["materials.sqlite"],
-        lambda r: write_database(r.path("materials.sqlite"), cards, files, provenance),
-    )  # fmt: skip
-    press.make(
-        "curves", "curves.h5",
-        {**{g.subject: g.key for g in groups}, "synthetic": ", ".join(sorted(simulated))},
-        ["curves.h5"],
-        lambda r: write_curves(
-            r.path("curves.h5"), [m for g in groups for m in g.measurements],
-            synthetic_campaigns=simulated,
-        ),
-    )  # fmt: skip
-    press.make(
-        "audit", "files.json", {"files": digest(tuple(files))}, ["audit/files.json"],
-        lambda r: _write(r.path("audit/files.json"), _ledger(files)),
-    )  # fmt: skip
-    _figures(groups, press)
+    for done, (material, mine) in enumerate(sorted(by_material.items()), start=1):
+        files = tuple(dict.fromkeys(file for g in mine for file in g.files))
+        card = attempt("card", material, files, partial(_card, material, mine, press.bench))
+        if isinstance(card, Failure):
+            key = press.bench.fail(card)
+        else:
+            key = press.make(
+                "card",
+                material,
+                _card_parts(card, mine),
+                [f"cards/{material}.json"],
+                _writes(card),
+                files,
+            )
+            if key != FAILED:
+                cards.append(card)
+        keys[f"card {material}"] = key
+        press.bench.progress("cards", done, len(by_material))
+    return cards, keys
+
+
+def _files_of(card: MaterialCard) -> tuple[str, ...]:
+    origins = [o for r in card.records for o in r.origins]
+    origins += [o for law in card.laws for o in law.origins]
+    return tuple(dict.fromkeys(o.path or o.register for o in origins))
 
 
 def _card(material: str, groups: Sequence[Group], bench: Bench) -> MaterialCard:
     infos = {s.campaign.name: s.campaign.info for s in bench.surveys if s.campaign}
-    campaigns = sorted({g.campaign for g in groups})
+    campaigns = sorted({g.campaign for g in groups if g.summary} or {g.campaign for g in groups})
     credits_ = tuple(
         Credit(c, i.title, i.laboratory, i.licence, i.source, i.synthetic)
         for c, i in ((c, infos[c]) for c in campaigns)
@@ -121,16 +201,22 @@ def _card_parts(card: MaterialCard, groups: Sequence[Group]) -> dict[str, str]:
     return {**{g.subject: g.key for g in groups}, "about": about}
 
 
-def _writes(card: MaterialCard) -> Callable[[Release], None]:
-    return lambda r: _write(r.path(f"cards/{card.material}.json"), card.to_json())
+def _writes(card: MaterialCard) -> Callable[[Release], Sequence[Failure]]:
+    return lambda r: _write(r.path(f"cards/{card.material}.json"), card_file(card))
 
 
-def _ledger(files: Sequence[FileEntry]) -> bytes:
-    return (json.dumps([asdict(f) for f in files], indent=1) + "\n").encode()
+def card_file(card: MaterialCard) -> bytes:
+    """Give the content of a card's file."""
+    return card.to_json()
 
 
-def _write(path: Path, data: bytes) -> None:
+def _as_json(entries: Sequence[FileEntry] | Sequence[Failure]) -> bytes:
+    return (json.dumps([asdict(entry) for entry in entries], indent=1) + "\n").encode()
+
+
+def _write(path: Path, data: bytes) -> Sequence[Failure]:
     path.write_bytes(data)
+    return ()
 
 
 def _figures(groups: Sequence[Group], press: Press) -> None:
@@ -138,12 +224,16 @@ def _figures(groups: Sequence[Group], press: Press) -> None:
     stale: list[FigureJob] = []
     for job, parts in figure_jobs(groups, press.bench):
         runs = "figure" if job.technique is None else f"figure {job.technique}"
-        press.make("figure", job.name, parts, job.files, partial(_later, stale, job), runs)
+        press.make("figure", job.name, parts, job.files, partial(_later, stale, job), runs=runs)
     if press.release is not None and stale:
-        draw_all(stale, press.release.path("figures"), press.bench)
+        files = {job.name: job.files for job in stale}
+        for failure in draw_all(stale, press.release.path("figures"), press.bench):
+            press.bench.fail(failure)
+            press.release.drop(*files[failure.subject])
 
 
-def _later(stale: list[FigureJob], job: FigureJob, release: Release) -> None:
+def _later(stale: list[FigureJob], job: FigureJob, release: Release) -> Sequence[Failure]:
     """Put a figure on the list: they are drawn together."""
     del release
     stale.append(job)
+    return ()

@@ -47,6 +47,12 @@ class Release:
             os.link(place / name, self.path(name))
         return True
 
+    def drop(self, *names: str) -> None:
+        """Leave outputs out that could not be made whole."""
+        for name in names:
+            if os.path.lexists(self.building / name):  # False as well for a name that is too long
+                (self.building / name).unlink()
+
     def publish(self, name: str) -> Path:
         """Make the release whole and current."""
         place = self.releases / name

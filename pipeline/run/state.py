@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import sqlite3
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from types import TracebackType
 
@@ -114,9 +114,12 @@ class State:
 
     def forget_all_but(self, stage: str, subjects: set[str]) -> None:
         """Drop what no longer has a source."""
-        gone = set(self.made(stage)) - subjects
+        self.forget(stage, set(self.made(stage)) - subjects)
+
+    def forget(self, stage: str, subjects: Iterable[str]) -> None:
+        """Drop what a stage made of some subjects."""
         self.db.executemany(
-            "DELETE FROM made WHERE stage = ? AND subject = ?", [(stage, s) for s in gone]
+            "DELETE FROM made WHERE stage = ? AND subject = ?", [(stage, s) for s in subjects]
         )
 
     def note(self, name: str, value: str) -> None:

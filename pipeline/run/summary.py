@@ -31,6 +31,7 @@ def text(document: Mapping[str, Any]) -> str:
         "REJECTED", [line for r in document["rejected"] for line in r["reason"].split("\n")]
     )
     lines += _some("MANIFEST", [_violation(m) for m in document["manifest"]])
+    lines += _internal(document)
     lines += _some("excluded", [f"{e['path']}: {e['reason']}" for e in document["excluded"]])
     lines += _some("warning", document["warnings"])
     synthetic = [c["name"] for c in document["campaigns"] if c["synthetic"]]
@@ -53,6 +54,20 @@ def _some(label: str, said: list[str]) -> list[str]:
     if len(said) > _LONG:
         shown.append(f"{'':<11}... and {len(said) - _LONG} more: deamat audit")
     return shown
+
+
+def _internal(document: Mapping[str, Any]) -> list[str]:
+    """Say in one line that the program itself failed, over what, and where the traceback is."""
+    errors = document["internal_errors"]
+    if not errors:
+        return []
+    first = errors[0]
+    more = f" and {len(errors) - 1} more" if len(errors) > 1 else ""
+    line = (
+        f"INTERNAL   {first['stage']} {first['subject']} ({first['error']}){more}: internal error, "
+        "all the rest is published; traceback in processed/audit/internal_errors.json"
+    )
+    return [line]
 
 
 def _refusals(refused: Iterable[Mapping[str, Any]]) -> list[str]:

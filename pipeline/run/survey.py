@@ -12,7 +12,7 @@ from pathlib import Path
 from deamat.core.campaign import CAMPAIGN_FILE, MANIFEST_FILE, Campaign, load_campaign
 from deamat.core.config import Config
 from deamat.core.errors import RawFileError
-from deamat.core.ledger import FileEntry, Role
+from deamat.core.ledger import Failure, FileEntry, Role
 from deamat.core.manifest import Difference, compare, parse_manifest
 from deamat.core.records import Specimen
 from deamat.core.register import REGISTER_FILES, read_register
@@ -89,6 +89,25 @@ def survey(
             _register(path, folder, result, techniques, config, spellings)
     _unnamed(result, folder, techniques)
     return result
+
+
+def without_survey(
+    failure: Failure,
+    sizes: Mapping[str, int],
+    hashes: Mapping[str, str],
+    techniques: Mapping[str, AnyTechnique],
+) -> Survey:
+    """Account for the files of a campaign whose survey ended in an internal error."""
+    entries = {
+        path: failed(FileEntry(path, hashes[path], size, _role(path, techniques), "used"), failure)
+        for path, size in sizes.items()
+    }
+    return Survey(None, entries=entries)
+
+
+def failed(entry: FileEntry, failure: Failure) -> FileEntry:
+    """Say of a file that the program failed over it."""
+    return replace(entry, status="failed", reason=f"internal error: {failure.error}")
 
 
 def _text(path: str) -> bool:

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 from deamat.core.errors import ConfigError, RawFileError
+from deamat.core.ledger import Failure
 from deamat.core.records import Flag, Measurement, Recording, Specimen
 from deamat.core.technique import Context
 from deamat.formats.detect import by_name, detect
 from deamat.formats.documentation import contradictions
 from deamat.formats.format import Format
 from deamat.formats.rawfile import RawFile, whole_file
+from deamat.run.boundary import attempt, killed
 from deamat.techniques import TECHNIQUES
 
 FILES_PER_TASK = 25
@@ -37,6 +40,16 @@ class Task:
     ends_open: bool
     stated_units: Mapping[str, str]
 
+    @property
+    def subject(self) -> str:
+        """How the account of the run calls it."""
+        return f"{self.specimen.campaign}/{self.specimen.technique}/{self.specimen.id}"
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """What it rests on."""
+        return (source_of(self.specimen),)
+
 
 @dataclass(frozen=True, slots=True)
 class Reduced:
@@ -45,6 +58,16 @@ class Reduced:
     measurement: Measurement | None
     error: RawFileError | None
     reader: str
+
+
+def attempt_one(task: Task) -> Reduced | Failure:
+    """Read and reduce one specimen; anything that nobody foresaw is a failure of it alone."""
+    return attempt("measurement", task.subject, task.files, partial(reduce_one, task))
+
+
+def lost(task: Task) -> Failure:
+    """Say that a specimen's worker process ended over it."""
+    return killed("measurement", task.subject, task.files)
 
 
 def reduce_one(task: Task) -> Reduced:
@@ -60,6 +83,11 @@ def reduce_one(task: Task) -> Reduced:
     except RawFileError as error:
         return Reduced(None, error, reader)
     return Reduced(_flagged(measurement, recording, task), None, reader)
+
+
+def source_of(specimen: Specimen) -> str:
+    """Name the file that a specimen's values come from: its own, else the register."""
+    return specimen.file or specimen.register
 
 
 def _read(task: Task, path: str) -> Recording:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import shutil
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -48,14 +49,14 @@ def write_words(folder: Path, job: FigureJob) -> None:
         path.write_text(f"SYNTHETIC {job.title} {len(job.measurements)}")
 
 
-def small_campaign(folder: Path) -> None:
-    """Write and register a campaign with the first three fresh specimens of two materials."""
-    rows = _rows("compression/specimens.csv")
+def small_campaign(folder: Path, materials: Sequence[str] = MATERIALS) -> None:
+    """Write and register a campaign with the first three fresh specimens of some materials."""
+    rows = twin_rows("compression/specimens.csv")
     kept = []
-    for material in MATERIALS:
+    for material in materials:
         mine = [r for r in rows if r["material"] == material and r["age"] == "after cure"]
         kept += mine[:3]
-    _copy(kept, folder, "compression/specimens.csv")
+    write_campaign(kept, folder, "compression/specimens.csv")
     register(folder.parent, folder.name, accept=True)
 
 
@@ -66,18 +67,19 @@ def all_of_one_material(folder: Path, material: str, most: int | None = None) ->
     """
     for path in sorted(TWIN.glob("*/*.csv")):
         name = path.relative_to(TWIN).as_posix()
-        mine = [row for row in _rows(name) if row["material"] == material]
+        mine = [row for row in twin_rows(name) if row["material"] == material]
         if mine:
-            _copy(mine[:most] if "file" in mine[0] else mine, folder, name)
+            write_campaign(mine[:most] if "file" in mine[0] else mine, folder, name)
     register(folder.parent, folder.name, accept=True)
 
 
-def _rows(name: str) -> list[dict[str, str]]:
+def twin_rows(name: str) -> list[dict[str, str]]:
+    """The rows of a register of the twin."""
     with (TWIN / name).open(newline="") as file:
         return list(csv.DictReader(file))
 
 
-def _copy(rows: list[dict[str, str]], folder: Path, name: str) -> None:
+def write_campaign(rows: list[dict[str, str]], folder: Path, name: str) -> None:
     """Write a register of some rows of the twin, and copy the files that it names."""
     place = folder / Path(name).parent
     place.mkdir(parents=True)
@@ -93,8 +95,8 @@ def _copy(rows: list[dict[str, str]], folder: Path, name: str) -> None:
         writer.writerows(rows)
 
 
-def curves(folders: Folders) -> list[Path]:
-    """The data files of the small campaign, in order."""
+def curves(folders: Folders, campaign: str = "demo") -> list[Path]:
+    """The data files of a small campaign, in order."""
     return sorted(
-        p for p in (folders.raw / "demo" / "compression").rglob("*") if p.suffix == ".txt"
+        p for p in (folders.raw / campaign / "compression").rglob("*") if p.suffix == ".txt"
     )

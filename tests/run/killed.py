@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import time
 from pathlib import Path
@@ -14,7 +15,7 @@ from deamat.run.folders import Folders
 
 def draw_for_ever(folder: Path, job: FigureJob) -> None:
     """Take the place of `draw_one`."""
-    print(f"drawing {job.name}", flush=True)
+    os.write(1, f"drawing {job.name}\n".encode())  # in one piece, unlike print
     time.sleep(600)
 
 

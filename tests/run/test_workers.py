@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import types
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -40,8 +41,25 @@ def test_workers_end_with_a_parent_that_was_killed(folders: Folders, blow: signa
 
 def test_work_comes_back_in_order_from_here_and_from_workers() -> None:
     with Workers(2) as workers:
-        assert list(workers.map(abs, [-3, 2, -1], at_once=3)) == [3, 2, 1]
-        assert list(workers.map(abs, range(-7, 0), at_once=2)) == [7, 6, 5, 4, 3, 2, 1]
+        assert list(workers.map(abs, [-3, 2, -1], abs, at_once=3)) == [3, 2, 1]
+        assert list(workers.map(abs, range(-7, 0), abs, at_once=2)) == [7, 6, 5, 4, 3, 2, 1]
+
+
+def _deadly(met: Path, number: int) -> int:
+    """Square a number, but end the process over 3, and over 5 the first time."""
+    if number == 3 or (number == 5 and not met.exists()):
+        if number == 5:
+            met.touch()
+        os.kill(os.getpid(), signal.SIGTERM)
+    return number**2
+
+
+def test_a_killed_worker_costs_what_it_was_killed_over_and_nothing_else(tmp_path: Path) -> None:
+    with Workers(2) as workers:
+        deadly = partial(_deadly, tmp_path / "met")
+        results = workers.map(deadly, range(8), lost=lambda n: -n, at_once=2)
+        assert list(results) == [0, 1, 4, -3, 16, 25, 36, 49]
+        assert list(workers.map(deadly, range(3), lost=lambda n: -n)) == [0, 1, 4]
 
 
 def _try(path: Path) -> int:

@@ -33,7 +33,7 @@ def figure(axes: Axes, measurements: Sequence[Measurement[Run]], summary: Summar
         if isinstance(measurement.result, FlowReadings):
             _flow_curve(axes, measurement.specimen.id, measurement.result)
             return
-        if measurement.result is not None:
+        if measurement.result is not None and measurement.result.time_s.size:
             runs.append((measurement.specimen.id, measurement.result))
     longest = max((float(r.time_s.max()) for _, r in runs), default=0.0)
     unit = "h" if longest >= _HOURS_FROM_S else "s"
