@@ -230,7 +230,7 @@ class Origin:
     ]
     last_line: Annotated[int | None, LINE]
     reader: Annotated[str | None, "Format that read the file."]
-    technique: Annotated[str, SAID, "As `name@version`."]
+    technique: Annotated[str, SAID, "Technique that measured it."]
     diagnostics: Mapping[str, Detail] = field(default_factory=dict)
 
 

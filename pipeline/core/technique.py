@@ -51,7 +51,6 @@ class Technique(Generic[C, R]):
     Parameters
     ----------
     key : the folder in a campaign and the section in `config/methods.toml`
-    version : raise it when `reduce` or `summarise` may give another answer
     yields, needs : property keys it gives, and those of other techniques it asks for
     config : pydantic class of its section
     required, optional : register columns by SI name (`diameter_m`) that it reads
@@ -62,7 +61,6 @@ class Technique(Generic[C, R]):
     """
 
     key: str
-    version: int
     yields: tuple[str, ...]
     needs: tuple[str, ...]
     config: type[C]

@@ -105,7 +105,7 @@ def _refusal_places(refusal: Refusal, card: MaterialCard) -> list[str]:
         for origin in entry.origins
         if entry.campaign == refusal.campaign
         and origin.specimen == refusal.specimen
-        and origin.technique.partition("@")[0] in tests
+        and origin.technique in tests
     }
     return sorted(places)
 
@@ -260,7 +260,7 @@ def _code_facts(trace: Trace) -> Iterator[tuple[str, str]]:
     provenance = trace.provenance
     yield "code", f"deamat {provenance.version}, digest {provenance.code}"
     origins = trace.entry.origins if trace.entry else ()
-    techniques = sorted({o.technique.partition("@")[0] for o in origins})
+    techniques = sorted({o.technique for o in origins})
     made = [f"{stage} {t}" for t in techniques for stage in ("measurement", "summary")]
     fingerprints = dict(provenance.stages)
     for stage in (*made, "card"):

@@ -44,7 +44,7 @@ def record(
     quantity = Quantity.from_budget(value, unit, lines)
     origin = Origin(
         "S1", value, 0.0, 0.0, "made-2026/specimens.csv", 2, None, None, None, None, None,
-        f"{technique.get(key, 'breakdown')}@1",
+        technique.get(key, "breakdown"),
     )  # fmt: skip
     u = quantity.standard_uncertainty
     return PropertyRecord(

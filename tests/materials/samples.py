@@ -63,7 +63,7 @@ def origin(specimen: str, value: float, line: int, **changes: Any) -> Origin:
         "first_line": 12,
         "last_line": 83,
         "reader": "bluehill",
-        "technique": "compression@2",
+        "technique": "compression",
         "diagnostics": {"samples": 72, "r": 0.9991234},
     }
     return Origin(**{**fields, **changes})
@@ -113,7 +113,7 @@ def handling() -> PropertyRecord:
         21600.0,
         5,
         **dict.fromkeys(("path", "sha256", "first_line", "last_line", "reader")),
-        technique="handling@1",
+        technique="handling",
         diagnostics={},
     )
     return modulus(
@@ -145,9 +145,7 @@ def viscosity_law(**changes: Any) -> Law:
         "valid": (3600.0, 43200.0),
         "conditions": {"temperature_K": 296.15},
         "method": "least squares",
-        "origins": (
-            origin("V1", 2.0, 2, u_shared=0.1, u_independent=0.0, technique="viscosity@1"),
-        ),
+        "origins": (origin("V1", 2.0, 2, u_shared=0.1, u_independent=0.0, technique="viscosity"),),
         "flags": (Flag("toe", "told with the modulus"),),
     }
     return Law(**{**fields, **changes})

@@ -118,7 +118,7 @@ def test_an_auditor_finds_everything_by_plain_sql(path: Path) -> None:
     assert rows[0] == (
         *("gel-a", "compressive_modulus", 158812.5, "Pa", 1000.0, 156412.5, 2, "after cure"),
         *("A1", 158212.5, "soft-2026/compression/A1.csv", "1" * 64, 12, 83, "bluehill"),
-        *("soft-2026/compression/specimens.csv", 2, "compression@2"),
+        *("soft-2026/compression/specimens.csv", 2, "compression"),
     )
     assert len(rows) == 2
     assert budget == [("load cell calibration", 800.0, 1), ("scatter between specimens", 600.0, 0)]

@@ -78,14 +78,14 @@ Specimens
     sha256       {"1" * 64}
     lines        12 to 83, read by bluehill
     register     soft-2026/compression/specimens.csv, line 2
-    technique    compression@2
+    technique    compression
     diagnostics  r 0.999123, samples 72
   A2  159.4 ± 1.0 kPa  (159412.5 Pa)
     file         soft-2026/compression/A2.csv
     sha256       {"2" * 64}
     lines        12 to 83, read by bluehill
     register     soft-2026/compression/specimens.csv, line 3
-    technique    compression@2
+    technique    compression
     diagnostics  r 0.999123, samples 72
 """
         + _MADE_BY
@@ -108,7 +108,7 @@ Specimens
   bed-23  6.00 ± 0.28 h  (21600.0 s)
     file       none: the register holds the value
     register   soft-2026/compression/specimens.csv, line 5
-    technique  handling@1
+    technique  handling
 """
         + _MADE_BY_NO_STAGE
     )
@@ -150,7 +150,7 @@ def test_a_refused_value_tells_reasons_and_places(tmp_path: Path) -> None:
     pulled = {
         "register": "soft-2026/tension/specimens.csv",
         "path": "soft-2026/tension/A1.csv",
-        "technique": "tension@1",
+        "technique": "tension",
     }
     strength = modulus(
         key="tensile_strength",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 import sqlite3
 from pathlib import Path
@@ -84,6 +85,23 @@ def test_a_second_run_in_the_same_folder_is_turned_away(folders: Folders) -> Non
         pytest.raises(ConfigError, match=r"another run is working in .*; wait for it"),
     ):
         run(folders)
+
+
+def test_a_card_names_no_code_and_no_environment(folders: Folders) -> None:
+    run(folders)
+    with open_database(folders.processed) as database:
+        made_by = database.provenance()
+        cards = [(folders.processed / "cards" / f"{m}.json").read_text() for m in database]
+    told = {
+        made_by.code,
+        *(f for _, f in made_by.stages),
+        *(f'"{v}"' for _, v in made_by.environment),
+    }
+    assert len(told) > 20
+    for card in cards:
+        assert not [word for word in told if word in card]
+        origins = [o for p in json.loads(card)["properties"] for o in p["origins"]]
+        assert {(o["reader"], o["technique"]) for o in origins} == {("mark10", "compression")}
 
 
 def test_synthetic_is_said_on_every_output(folders: Folders) -> None:

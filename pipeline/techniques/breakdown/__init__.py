@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from deamat.core.register import RegisterForm
 from deamat.core.technique import Technique
-from deamat.techniques.breakdown.config import VERSION, YIELDS, BreakdownConfig
+from deamat.techniques.breakdown.config import YIELDS, BreakdownConfig
 from deamat.techniques.breakdown.figure import figure
 from deamat.techniques.breakdown.reduce import reduce
 from deamat.techniques.breakdown.summarise import summarise
 
 TECHNIQUE = Technique(
     key="breakdown",
-    version=VERSION,
     yields=YIELDS,
     needs=(),
     config=BreakdownConfig,

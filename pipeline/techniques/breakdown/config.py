@@ -11,7 +11,6 @@ FIELD = "breakdown_field"
 STRENGTH, SHAPE, UNBIASED = "breakdown_strength", "weibull_shape", "weibull_shape_unbiased"
 B10, B1 = "breakdown_B10", "breakdown_B1"
 YIELDS = (STRENGTH, SHAPE, UNBIASED, B10, B1)
-VERSION = 1
 
 
 class BreakdownConfig(Declared):

@@ -38,7 +38,6 @@ from deamat.techniques.breakdown.config import (
     SHAPE,
     STRENGTH,
     UNBIASED,
-    VERSION,
     YIELDS,
     BreakdownConfig,
 )
@@ -155,7 +154,7 @@ def _records(sample: Sample, lost: list[str], config: BreakdownConfig) -> list[P
             area_ratio_limit=limit if unit == "V/m" else None,
             method=f"{method}; {_methods(sample)}; interval: {shape.method}",
             budget=budget,
-            origins=tuple(origin_of(m, v, f"breakdown@{VERSION}") for m, v in sample.pairs),
+            origins=tuple(origin_of(m, v, "breakdown") for m, v in sample.pairs),
             flags=(*flags, *more, *_implausible(key, value)),
             diagnostics=details,
         )

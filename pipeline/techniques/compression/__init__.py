@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from deamat.core.technique import Technique
-from deamat.techniques.compression.config import VERSION, YIELDS, CompressionConfig
+from deamat.techniques.compression.config import YIELDS, CompressionConfig
 from deamat.techniques.compression.figure import figure
 from deamat.techniques.compression.reduce import reduce
 from deamat.techniques.compression.summarise import summarise
 
 TECHNIQUE = Technique(
     key="compression",
-    version=VERSION,
     yields=YIELDS,
     needs=(),
     config=CompressionConfig,

@@ -9,7 +9,6 @@ from deamat.techniques.shared.curve_config import CurveConfig, StrainWindow
 MODULUS = "compressive_modulus"
 COMPENSATED = "compressive_modulus_toe_compensated"
 YIELDS = (MODULUS, COMPENSATED)
-VERSION = 2
 
 
 class CompressionConfig(CurveConfig):

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from deamat.core.records import Measurement, Summary
 from deamat.core.technique import Context
-from deamat.techniques.compression.config import VERSION, YIELDS, CompressionConfig
+from deamat.techniques.compression.config import YIELDS, CompressionConfig
 from deamat.techniques.shared.mean import summarise_by_mean
 from deamat.techniques.shared.modulus import LoadingCurve
 
@@ -15,4 +15,4 @@ def summarise(
     measurements: Sequence[Measurement[LoadingCurve]], _context: Context[CompressionConfig]
 ) -> Summary:
     """Average the specimens of one material under one set of conditions."""
-    return summarise_by_mean(measurements, f"compression@{VERSION}", YIELDS)
+    return summarise_by_mean(measurements, "compression", YIELDS)

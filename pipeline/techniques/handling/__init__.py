@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from deamat.core.register import RegisterForm
 from deamat.core.technique import Technique
-from deamat.techniques.handling.config import VERSION, VISCOSITY, YIELDS, HandlingConfig
+from deamat.techniques.handling.config import VISCOSITY, YIELDS, HandlingConfig
 from deamat.techniques.handling.figure import figure
 from deamat.techniques.handling.reduce import reduce
 from deamat.techniques.handling.runs import RUN_COLUMNS
@@ -21,7 +21,6 @@ from deamat.techniques.handling.summarise import summarise
 
 TECHNIQUE = Technique(
     key="handling",
-    version=VERSION,
     yields=YIELDS,
     needs=(VISCOSITY,),
     config=HandlingConfig,

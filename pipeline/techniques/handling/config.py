@@ -10,7 +10,6 @@ KEY = "handling_time"
 VISCOSITY_THEN = "viscosity_at_handling_time"
 VISCOSITY = "viscosity"
 YIELDS = (KEY, VISCOSITY_THEN)
-VERSION = 2
 
 
 class HandlingConfig(Declared):

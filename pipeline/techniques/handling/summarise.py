@@ -20,7 +20,7 @@ from deamat.core.records import (
 )
 from deamat.core.technique import Context
 from deamat.core.units import from_si
-from deamat.techniques.handling.config import KEY, VERSION, HandlingConfig
+from deamat.techniques.handling.config import KEY, HandlingConfig
 from deamat.techniques.handling.runs import Line, Run, runs_of
 from deamat.techniques.handling.viscosity_then import viscosity_then
 
@@ -103,7 +103,7 @@ def _origin(line: Line) -> Origin:
         first_line=None,
         last_line=None,
         reader=None,
-        technique=f"handling@{VERSION}",
+        technique="handling",
         diagnostics={
             "defect": line.defect,
             **({} if line.limit is None else {"limit": line.limit}),

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from deamat.core.register import RegisterForm
 from deamat.core.technique import Technique
-from deamat.techniques.nanoindentation.config import VERSION, YIELDS, NanoindentationConfig
+from deamat.techniques.nanoindentation.config import YIELDS, NanoindentationConfig
 from deamat.techniques.nanoindentation.figure import figure
 from deamat.techniques.nanoindentation.reduce import reduce
 from deamat.techniques.nanoindentation.summarise import summarise
 
 TECHNIQUE = Technique(
     key="nanoindentation",
-    version=VERSION,
     yields=YIELDS,
     needs=(),
     config=NanoindentationConfig,

@@ -8,7 +8,6 @@ from deamat.core.instruments import Declared
 
 MODULUS = "indentation_modulus"
 YIELDS = (MODULUS,)
-VERSION = 1
 IDEAL_BERKOVICH = (24.5,)  # 3 sqrt(3) tan^2(65.27 degrees)
 
 

@@ -12,14 +12,13 @@ Source: ASTM D150; Sikulskyi et al. 2022, Front. Robot. AI 9:1034914, section 3.
 from __future__ import annotations
 
 from deamat.core.technique import Technique
-from deamat.techniques.permittivity.config import MODULUS, VERSION, YIELDS, PermittivityConfig
+from deamat.techniques.permittivity.config import MODULUS, YIELDS, PermittivityConfig
 from deamat.techniques.permittivity.figure import figure
 from deamat.techniques.permittivity.reduce import reduce
 from deamat.techniques.permittivity.summarise import summarise
 
 TECHNIQUE = Technique(
     key="permittivity",
-    version=VERSION,
     yields=YIELDS,
     needs=(MODULUS,),
     config=PermittivityConfig,

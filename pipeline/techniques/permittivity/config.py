@@ -12,7 +12,6 @@ PERMITTIVITY = "relative_permittivity"
 LOSS = "loss_tangent"
 MODULUS = "compressive_modulus"
 YIELDS = (PERMITTIVITY, LOSS)
-VERSION = 1
 
 
 class PermittivityConfig(Declared):

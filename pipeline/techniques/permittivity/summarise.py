@@ -10,7 +10,6 @@ from deamat.core.records import Detail, Measurement, PropertyRecord, Summary
 from deamat.core.technique import Context
 from deamat.techniques.permittivity.config import (
     PERMITTIVITY,
-    VERSION,
     YIELDS,
     PermittivityConfig,
 )
@@ -22,7 +21,7 @@ def summarise(
     measurements: Sequence[Measurement[FilmSpectrum]], context: Context[PermittivityConfig]
 ) -> Summary:
     """Average the films and state how the permittivity depends on frequency."""
-    summary = summarise_by_mean(measurements, f"permittivity@{VERSION}", YIELDS)
+    summary = summarise_by_mean(measurements, "permittivity", YIELDS)
     return replace(
         summary,
         records=tuple(

@@ -32,7 +32,7 @@ def summarise_by_mean(
     Parameters
     ----------
     measurements : of one material in one campaign; their order does not matter
-    technique : name and version (`compression@1`), for the origins
+    technique : its key, for the origins
     keys : property keys in the order of the records
 
     Raises

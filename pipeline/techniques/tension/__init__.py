@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from deamat.core.technique import Technique
-from deamat.techniques.tension.config import VERSION, YIELDS, TensionConfig
+from deamat.techniques.tension.config import YIELDS, TensionConfig
 from deamat.techniques.tension.figure import figure
 from deamat.techniques.tension.reduce import reduce
 from deamat.techniques.tension.summarise import summarise
 
 TECHNIQUE = Technique(
     key="tension",
-    version=VERSION,
     yields=YIELDS,
     needs=(),
     config=TensionConfig,

@@ -10,7 +10,6 @@ MODULUS = "tensile_modulus"
 STRENGTH = "tensile_strength"
 ELONGATION = "elongation_at_break"
 YIELDS = (MODULUS, STRENGTH, ELONGATION)
-VERSION = 2
 
 
 class TensionConfig(CurveConfig):

@@ -11,11 +11,11 @@ from deamat.core.records import (
 from deamat.core.technique import Context
 from deamat.techniques.shared.mean import summarise_by_mean
 from deamat.techniques.shared.modulus import LoadingCurve
-from deamat.techniques.tension.config import VERSION, YIELDS, TensionConfig
+from deamat.techniques.tension.config import YIELDS, TensionConfig
 
 
 def summarise(
     measurements: Sequence[Measurement[LoadingCurve]], _context: Context[TensionConfig]
 ) -> Summary:
     """Average the specimens of one material under one set of conditions."""
-    return summarise_by_mean(measurements, f"tension@{VERSION}", YIELDS)
+    return summarise_by_mean(measurements, "tension", YIELDS)

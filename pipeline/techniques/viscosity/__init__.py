@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from deamat.core.register import RegisterForm
 from deamat.core.technique import Technique
-from deamat.techniques.viscosity.config import VERSION, YIELDS, ViscosityConfig
+from deamat.techniques.viscosity.config import YIELDS, ViscosityConfig
 from deamat.techniques.viscosity.figure import figure
 from deamat.techniques.viscosity.reduce import reduce
 from deamat.techniques.viscosity.summarise import summarise
 
 TECHNIQUE = Technique(
     key="viscosity",
-    version=VERSION,
     yields=YIELDS,
     needs=(),
     config=ViscosityConfig,

@@ -18,7 +18,6 @@ INDEX = "flow_index"
 YIELDS = (VISCOSITY, DOUBLING, LIMIT, CONSISTENCY, INDEX, CONSISTENCY_WIDE_CUP)
 # Refused by name where a run gives nothing; the others are only asked of some liquids.
 ALWAYS = (VISCOSITY, DOUBLING)
-VERSION = 2
 
 
 class RateFactor(Declared):

@@ -10,7 +10,7 @@ from deamat.core.records import Measurement, Specimen, Summary
 from deamat.core.technique import Context
 from deamat.techniques.shared.mean import summarise_by_mean
 from deamat.techniques.shared.outcome import refusal
-from deamat.techniques.viscosity.config import ALWAYS, VERSION, VISCOSITY, YIELDS, ViscosityConfig
+from deamat.techniques.viscosity.config import ALWAYS, VISCOSITY, YIELDS, ViscosityConfig
 from deamat.techniques.viscosity.pooled import fit_runs, laws_of, refuse_mixed_units
 from deamat.techniques.viscosity.readings import Readings
 from deamat.techniques.viscosity.result import Run
@@ -22,7 +22,7 @@ def summarise(
 ) -> Summary:
     """Average the values of the runs, and fit one law to all of them."""
     config = context.config
-    summary = summarise_by_mean(measurements, f"viscosity@{VERSION}", YIELDS)
+    summary = summarise_by_mean(measurements, "viscosity", YIELDS)
     ordered = sorted(measurements, key=lambda m: (m.specimen.line, m.specimen.id))
     runs = [
         (m.specimen, windowed(m.result, config))

@@ -144,7 +144,7 @@ def test_every_line_is_an_origin_of_the_value() -> None:
         ("m a 22 1.5 3", 5400.0, 4),
     ]
     assert {o.register for o in found.origins} == {"c/handling/observations.csv"}
-    assert {o.technique for o in found.origins} == {"handling@2"}
+    assert {o.technique for o in found.origins} == {"handling"}
     assert [o.diagnostics for o in found.origins][-1] == {"defect": "gap"}
 
 

@@ -59,7 +59,7 @@ def measurement(
 
 
 def summary(*measurements: Measurement) -> Summary:
-    return summarise_by_mean(measurements, "compression@1", (KEY,))
+    return summarise_by_mean(measurements, "compression", (KEY,))
 
 
 def only(*measurements: Measurement) -> PropertyRecord:
@@ -97,7 +97,7 @@ def test_origins_lead_to_the_lines_of_the_file() -> None:
     assert (first.register, first.register_line) == ("c/t/s.csv", 2)
     assert (first.path, first.sha256) == ("c/t/a.csv", "0" * 64)
     assert (first.first_line, first.last_line) == (9, 99)
-    assert (first.reader, first.technique) == ("test", "compression@1")
+    assert (first.reader, first.technique) == ("test", "compression")
     assert first.diagnostics == {"samples": 91}
 
 
