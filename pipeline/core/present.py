@@ -39,6 +39,7 @@ _CONDITION_WORDS: dict[str, tuple[str, str]] = {
     "rate_per_s": ("rate", "1/s"),
     "time_s": ("time since mixing", "h"),
     "window": ("window", "1"),  # of strain or of time in s: the method says which
+    "electrode": ("electrode", "1"),
     "electrode_area_m2": ("electrode area", "mm2"),
     "rate_V_per_s": ("rate of rise", "V/s"),
 }

@@ -19,6 +19,7 @@ from dataclasses import dataclass, field
 
 from deamat.core.errors import RawFileError
 from deamat.core.instruments import Gauge
+from deamat.core.number_grammar import is_number
 from deamat.core.quantity import Quantity
 from deamat.core.records import Condition, Specimen
 from deamat.core.register_columns import CONDITION_COLUMNS, Column, numeric_columns
@@ -27,7 +28,6 @@ from deamat.core.slug import Spellings, label_fault, nearest_label, nearest_slug
 REGISTER_FILE = "specimens.csv"
 REGISTER_FILES = (REGISTER_FILE, "observations.csv")
 
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _TINIEST, _LARGEST = 1e-30, 1e30  # in SI: no measured number is smaller or larger
 _LONGEST_SPECIMEN = 120
 _SHOWN = 80  # characters of a bad cell
@@ -293,7 +293,7 @@ class _Rows:
         return found
 
     def _number(self, cell: str, line: int, column: Column) -> float:
-        if not _NUMBER.fullmatch(cell):
+        if not is_number(cell):
             hint = "write it with a decimal point"
             raise RawFileError(self.path, "not a number", line, column.index + 1, cell, hint)
         value = float(cell)

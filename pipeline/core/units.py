@@ -11,6 +11,7 @@ import math
 import re
 
 from deamat.core.errors import ConfigError, PipelineError
+from deamat.core.number_grammar import NUMBER
 
 _KELVIN_AT_0_C = 273.15
 
@@ -112,7 +113,7 @@ _SPELLINGS = str.maketrans(
     {"\u00b5": "u", "\u03bc": "u", "\u00b2": "2", "\u00b3": "3", "\u00b0": "", "\u00b7": "."}
 )
 
-_WRITTEN = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([^\W\d_]\S*|%)?\s*")
+_WRITTEN = re.compile(rf"\s*({NUMBER.pattern})\s*([^\W\d_]\S*|%)?\s*")
 
 
 class UnknownUnit(PipelineError):

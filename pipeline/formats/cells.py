@@ -14,6 +14,7 @@ import numpy as np
 
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import RawFileError
+from deamat.core.number_grammar import is_number
 from deamat.formats.rawfile import RawFile
 
 # From here on a reading means "over range": SCPI instruments send 9.9E37 (9.91E37 for "no number").
@@ -38,7 +39,6 @@ class Dialect:
     segmented: bool = False
 
 
-_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _GROUPED = re.compile(r"[+-]?[1-9][0-9]{0,2}(?:,[0-9]{3})+(?:\.[0-9]*)?")
 _GROUPED_OR_DECIMAL = re.compile(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}")
 _GROUPED_BY_POINTS = re.compile(r"[+-]?[1-9][0-9]{0,2}(?:\.[0-9]{3})+(?:,[0-9]*)?")
@@ -128,7 +128,7 @@ def read_cells(
 def looks_numeric(cell: str) -> bool:
     """Say whether a cell holds a plain number, with a decimal point or a decimal comma."""
     plain = cell.strip(' \t"')
-    return bool(_NUMBER.fullmatch(plain) or _COMMA_NUMBER.fullmatch(plain))
+    return bool(is_number(plain) or _COMMA_NUMBER.fullmatch(plain))
 
 
 def _split(
@@ -197,7 +197,7 @@ def _value(field: str, dialect: Dialect) -> float | None:
         field = field[1:-1]
         if _GROUPED.fullmatch(field):
             field = field.replace(",", "")
-    if not _NUMBER.fullmatch(field):
+    if not is_number(field):
         return None
     value = float(field)
     return value if abs(value) < OVER_RANGE else None
@@ -218,10 +218,10 @@ def _refusal(
 def _why(field: str, dialect: Dialect) -> tuple[str, str]:
     """Give reason and mend for a field that `_value` does not read."""
     plain = field.strip('"') if dialect.quoted else field
-    if dialect.decimal == "," and "." in plain and _NUMBER.fullmatch(plain):
+    if dialect.decimal == "," and "." in plain and is_number(plain):
         return "a decimal point in a file with decimal commas", "export with one decimal mark"
     pointed = plain.replace(",", ".", 1) if dialect.decimal == "," else plain
-    if _NUMBER.fullmatch(pointed):  # a number indeed, so it was refused for its size
+    if is_number(pointed):  # a number indeed, so it was refused for its size
         if math.isinf(float(pointed)):
             return "a number too large to hold", "export the file again"
         return "a number that stands for over-range (9.9E37 or beyond)", _RANGE

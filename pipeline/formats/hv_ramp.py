@@ -36,10 +36,11 @@ from dataclasses import dataclass, replace
 
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import RawFileError
+from deamat.core.number_grammar import is_number
 from deamat.core.records import Recording
 from deamat.core.register_columns import split_unit
 from deamat.core.units import known, si_factor
-from deamat.formats.cells import Dialect, looks_numeric
+from deamat.formats.cells import Dialect
 from deamat.formats.columns import Reader
 from deamat.formats.format import Format
 from deamat.formats.header import Layout, notes, split
@@ -135,7 +136,7 @@ def _monitors(file: RawFile, layout: Layout) -> dict[str, _Monitor]:
 def _monitor(file: RawFile, line: int, text: str) -> _Monitor:
     """Read `voltage monitor, 2000 V/V`."""
     found = _MONITOR.fullmatch(text)
-    if found is None or not looks_numeric(found[2]) or "," in found[2] or float(found[2]) == 0.0:
+    if found is None or not is_number(found[2]) or float(found[2]) == 0.0:
         raise RawFileError(
             file.path, "not the declaration of a voltage or current monitor", line=line,
             value=text, mend=_MEND,

@@ -14,9 +14,10 @@ import numpy as np
 
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import RawFileError
+from deamat.core.number_grammar import NUMBER, is_number
 from deamat.core.records import Flag, Recording, Source
 from deamat.core.units import UnknownUnit, si_factor
-from deamat.formats.cells import OVER_RANGE, Dialect, looks_numeric, read_cells
+from deamat.formats.cells import OVER_RANGE, Dialect, read_cells
 from deamat.formats.rawfile import RawFile
 from deamat.formats.table import row_flags
 
@@ -31,7 +32,7 @@ PAIRS: dict[str, tuple[tuple[str, str], tuple[str, str]]] = {
     "Z-theta-rad": (("impedance_ohm", "ohm"), ("phase_rad", "rad")),
 }
 _MOST_LINES_NAMED = 5
-_VOLTAGE = re.compile(r"([-+0-9.eE]+?)\s*(m?V)?")
+_VOLTAGE = re.compile(rf"({NUMBER.pattern})\s*(m?V)?")
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +123,7 @@ def level_of(file: RawFile, line: int, text: str) -> str:
     RawFileError : anything else
     """
     found = _VOLTAGE.fullmatch(text.strip())
-    if found is None or not looks_numeric(found[1]) or not float(found[1]) > 0.0:
+    if found is None or not float(found[1]) > 0.0:
         raise RawFileError(
             file.path, "not a test level in V or mV", line=line, value=text,
             mend="log the reply of LEV:VOLT? as it is",
@@ -225,7 +226,7 @@ def _sentinel(cell: str, dialect: Dialect) -> float | None:
     plain = cell.strip(" \t")
     if dialect.decimal == ",":
         plain = plain.replace(",", ".", 1)
-    if not looks_numeric(plain) or "," in plain:
+    if not is_number(plain):
         return None
     value = float(plain)
     return value if OVER_RANGE <= abs(value) < np.inf else None

@@ -12,6 +12,7 @@ import numpy as np
 
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import RawFileError
+from deamat.core.number_grammar import is_number
 from deamat.core.records import Flag, Recording, Source
 from deamat.core.units import to_si
 from deamat.formats.rawfile import RawFile
@@ -25,7 +26,6 @@ _SET_BACK_S = 7200.0
 OVER_RANGE = re.compile(r"E{2,}(?:\.E+)?|OVER|OL", re.IGNORECASE)
 BELOW_ZERO = re.compile(r"-{2,}(?:\.-+)?")
 NO_PROBE = re.compile(r"-+\.-+|-{2,}|")
-NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _TIME_OF_DAY = re.compile(r"([01][0-9]|2[0-3]):([0-5][0-9]):([0-5][0-9](?:\.[0-9]+)?)")
 
 
@@ -126,7 +126,7 @@ def number(file: RawFile, line: int, column: int, text: str, what: str) -> float
     ------
     RawFileError : anything else
     """
-    if not NUMBER.fullmatch(text) or not np.isfinite(value := float(text)):
+    if not is_number(text) or not np.isfinite(value := float(text)):
         raise RawFileError(
             file.path, f"not a number for the {what}", line, column, text, "export the file again"
         )

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from deamat.core.ledger import Failure
 from deamat.core.present import readable_conditions
-from deamat.core.records import Measurement, Summary
+from deamat.core.records import Condition, Measurement, Summary
 from deamat.core.slug import file_stem, short_slug
 from deamat.report.moduli import is_modulus, modulus_bars
 from deamat.run.book import STALE
@@ -81,10 +81,15 @@ def _stem(group: Group) -> str:
     """Name the figure of a group by ids and by its conditions in short."""
     if not group.conditions:
         return file_stem(group.material, group.technique)
-    values = " ".join(str(value) for _, value in group.conditions)
+    values = " ".join(_short(key, value) for key, value in group.conditions)
     return file_stem(
         group.material, group.technique, short_slug(values, repr(sorted(group.conditions)))
     )
+
+
+def _short(key: str, value: Condition) -> str:
+    """Write `323.15K`: the unit stands in the key."""
+    return f"{value:.6g}{key.rpartition('_')[2]}" if isinstance(value, float) else str(value)
 
 
 def _gives_moduli(group: Group) -> bool:

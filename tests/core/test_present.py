@@ -90,6 +90,7 @@ def test_conditions_are_told_in_the_order_of_the_closed_list() -> None:
     conditions: dict[str, Condition] = {
         "rate_V_per_s": 500.0,
         "electrode_area_m2": 1e-4,
+        "electrode": "carbon black",
         "time_s": 3600.0,
         "window": (0.0, 0.05),
         "rate_per_s": 0.00555556,
@@ -102,8 +103,8 @@ def test_conditions_are_told_in_the_order_of_the_closed_list() -> None:
     assert set(conditions) == set(CONDITIONS)
     assert readable_conditions(conditions) == (
         "age after cure, cure 2 h at 90 C, temperature 23 C, humidity 45 %, frequency 10 Hz, "
-        "rate 0.00555556 1/s, time since mixing 1 h, window 0 to 0.05, electrode area 100 mm2, "
-        "rate of rise 500 V/s"
+        "rate 0.00555556 1/s, time since mixing 1 h, window 0 to 0.05, electrode carbon black, "
+        "electrode area 100 mm2, rate of rise 500 V/s"
     )
     assert readable_conditions({}) == "none stated"
     assert readable_conditions({"temperature_K": "room"}) == "temperature room"

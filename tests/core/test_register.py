@@ -191,6 +191,7 @@ def test_a_length_of_zero_is_a_slip_where_nobody_needs_it_too() -> None:
         ("1e300", "too large for a number"),
         ("9" * 400, "too large for a number"),
         ("1e-320", "too small for a number"),
+        ("\u0661\u0662", "not a number"),
     ],
 )
 def test_a_number_that_nobody_measured(cell: str, reason: str) -> None:

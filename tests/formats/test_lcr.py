@@ -71,6 +71,12 @@ def test_the_function_names_the_columns(function: str, columns: list[str]) -> No
     assert recording.columns[columns[0]][0] == 1.5821e-10
 
 
+@pytest.mark.parametrize("row", ['10,1e-10,"9.9E37",OK', '10,1e-10,"1e-3",OK'])
+def test_a_quoted_reply_is_refused_by_its_place(row: str) -> None:
+    said = refused(f"# FUNC? => Cp-D\n{row}\n20,1e-10,1e-3,OK\n")
+    assert said.startswith("x, line 2, column 3: a quoted number, which this format does not use")
+
+
 def test_degrees_become_radians() -> None:
     recording = read("# FUNC? => Z-theta-deg\n1e1,1e8,-90,OK\n")
     assert recording.columns["phase_rad"][0] == pytest.approx(-math.pi / 2, rel=1e-15)
