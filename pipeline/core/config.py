@@ -153,6 +153,8 @@ def validate(cls: type[M], data: Mapping[str, Any], path: Path, section: str = "
                 near = difflib.get_close_matches(key, _field_names(cls), n=1)
                 hint = f"; did you mean {near[0]!r}?" if near else ""
                 said.append(f"unknown key {where!r}{hint}")
+            elif e["type"] == "value_error" and not where:  # of the file as a whole
+                said.append(str(e["ctx"]["error"]))
             else:
                 said.append(f"{where}: {e['msg']} (found {e['input']!r})")
         raise ConfigError(f"{path}: " + "; ".join(said)) from error

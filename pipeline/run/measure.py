@@ -56,8 +56,8 @@ class Group:
 
     @property
     def subject(self) -> str:
-        """How messages and file names call it."""
-        said = ",".join(f"{k}={v}" for k, v in self.conditions)
+        """How messages and the state name it; different conditions never read alike."""
+        said = ",".join(f"{k}={v!r}" for k, v in self.conditions)
         return f"{self.campaign}/{self.technique}/{self.material}" + (f"[{said}]" if said else "")
 
     @property

@@ -32,6 +32,10 @@ def _config(folder: Path, name: str, text: str) -> None:
         ("methods.toml", "[demo", "methods.toml: Expected ']' at the end of a table declaration"),
         ("instruments.toml", "[gauges.height]\nu_reading_um = 5", "unknown key 'gauges.height.u_reading_um'; did you mean 'u_reading_m'?"),
         ("exclusions.toml", "[[exclude]]\npath = 'a'\nreason = ''", "exclusions.toml: exclude.0.reason: String should have at least 3 characters"),
+        ("exclusions.toml", "[[exclude]]\npath = '../a'\nreason = 'bad'", "exclude.0.path: Value error, a path relative to raw/ with forward slashes and without '..' (found '../a')"),
+        ("exclusions.toml", "[[exclude]]\npath = '/a'\nreason = 'bad'", "a path relative to raw/"),
+        ("materials.toml", "['EF30 (1:1)']\nname = 'a'", "materials.toml: the material 'EF30 (1:1)': an id consists of the letters a to z, digits, '.', '_' and '-', not ' '; nearest valid: 'ef30-1-1'"),
+        ("materials.toml", "[m-5K]\nname = 'a'\n[m-5k]\nname = 'b'", "materials.toml: the material 'm-5k' differs only in case from 'm-5K' in this file"),
     ],
 )  # fmt: skip
 def test_a_slip_is_named(tmp_path: Path, name: str, text: str, message: str) -> None:

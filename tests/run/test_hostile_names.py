@@ -13,10 +13,13 @@ from typing import Any
 import pytest
 
 import deamat.run.draw
-from deamat.core.slug import LONGEST_STEM, nearest_slug
+from deamat.core.errors import ConfigError
+from deamat.core.slug import LONGEST_STEM, Spellings, nearest_slug
 from deamat.run.folders import Folders
+from deamat.run.measure import Group
 from deamat.run.register import register
 from tests.run.conftest import MATERIALS, ROOT, run, small_campaign, write_words
+from tests.run.test_observations import look
 
 MATERIAL_NAMES = (
     "../../../../escaped", "..", ".", "/tmp/escaped", "C:\\escaped", "..\\..\\escaped",
@@ -126,3 +129,44 @@ def test_figures_of_any_conditions_have_short_names_of_their_own(ran: Ran) -> No
     of_conditions = [f for f in figures if "-compression-" in f]
     assert len(of_conditions) == len(CONDITIONS)
     assert any(re.search(r"100-c-1-h-[0-9a-f]{8}$", f) for f in of_conditions)
+
+
+@pytest.mark.parametrize("campaign", ["../outside", "demo/..", "/tmp", "..", ""])
+def test_no_manifest_is_written_outside_raw(tmp_path: Path, campaign: str) -> None:
+    raw = tmp_path / "raw"
+    small_campaign(raw / "demo")
+    for folder in (raw, tmp_path / "outside"):
+        folder.mkdir(exist_ok=True)
+        shutil.copy(raw / "demo" / "campaign.toml", folder)
+    before = set(tmp_path.rglob("*"))
+    with pytest.raises(ConfigError, match="is not the name of a folder in"):
+        register(raw, campaign, accept=True)
+    assert set(tmp_path.rglob("*")) == before
+
+
+def test_names_that_differ_only_in_case_are_one_name_over_campaigns_too(tmp_path: Path) -> None:
+    spellings = Spellings()
+    register_of = "specimen,material,diameter_mm,height_mm\na,m-5{},28,12\n"
+    seen = [
+        look(place, {"compression/specimens.csv": register_of.format(letter).encode()}, spellings)
+        for place, letter in (
+            (tmp_path / "one" / "drift-5K", "K"),
+            (tmp_path / "other" / "drift-5k", "K"),  # a folder of its own: not every disk has both
+            (tmp_path / "one" / "third", "k"),
+        )
+    ]
+    reasons = [{path: e.reason for path, e in one.entries.items() if e.reason} for one in seen]
+    assert "differs only in case: 'drift-5K' in raw/" in reasons[1]["drift-5k/campaign.toml"]
+    assert (
+        "material is spelt otherwise: 'm-5K' in drift-5K/compression/specimens.csv, line 2"
+        in (reasons[2]["third/compression/specimens.csv"])
+    )
+    assert [len(one.specimens) for one in seen] == [1, 0, 0]
+
+
+def test_conditions_that_read_alike_are_two_groups() -> None:
+    alike = ((("age", "a,cure=b"),), (("age", "a"), ("cure", "b")))
+    subjects = {
+        Group("c", "m", "compression", conditions, "", (), None).subject for conditions in alike
+    }
+    assert len(subjects) == 2

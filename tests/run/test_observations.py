@@ -17,7 +17,7 @@ CAMPAIGN = b'title = "t"\nlaboratory = "l"\nlicence = "CC0"\nsource = "s"\nsynth
 OBSERVATIONS = handling_part(7).files["handling/observations.csv"]
 
 
-def look(folder: Path, contents: Mapping[str, bytes]) -> Survey:
+def look(folder: Path, contents: Mapping[str, bytes], spellings: Spellings | None = None) -> Survey:
     for name, data in {"campaign.toml": CAMPAIGN, **contents}.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_bytes(data)
@@ -29,7 +29,7 @@ def look(folder: Path, contents: Mapping[str, bytes]) -> Survey:
         {name: hashlib.sha256(data).hexdigest() for name, data in names.items()},
         TECHNIQUES,
         load_config(ROOT / "config", {t.key: t.config for t in TECHNIQUES.values()}),
-        Spellings(),
+        spellings or Spellings(),
     )
 
 
