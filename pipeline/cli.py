@@ -90,7 +90,7 @@ def all_(
         click.echo(json.dumps(document, indent=1))
     else:
         click.echo(summary.text(document))
-        done = [] if document["nothing_to_do"] else document["redone"]
+        done = {} if document["nothing_to_do"] else document["redone_by_stage"]
         click.echo(summary.redone(done))
     sys.exit(document["exit_code"])
 

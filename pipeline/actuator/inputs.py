@@ -106,7 +106,7 @@ def inputs_of(
 
 def _measured(record: PropertyRecord, *drives: str) -> Input:
     """Return a record of a card as an input that sets the fields `drives` of a strip."""
-    technique = record.origins[0].technique.partition("@")[0] if record.origins else record.key
+    technique = record.origins[0].technique if record.origins else record.key
     name = f"{record.key} of {record.material}"
     test = f"{technique} of {record.material}"
     lines = record.budget or (

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import ClassVar, Literal
 
 from deamat.core.errors import RawFileError
+from deamat.core.schema import Entry
 
 Status = Literal["used", "refused", "rejected", "excluded", "failed"]
 Role = Literal["recording", "register", "campaign", "manifest", "document", "unnamed", "missing"]
@@ -26,7 +27,11 @@ class FileEntry:
     manifest : `ok`, or how it departs from the manifest: `changed`, `missing`, `extra`
     reason, line, column : why, and where in the file; of several bad rows one reason a line, and
         the place of the first
+    placed : the reason itself begins with the path and the place
+    awaits : technique that its register is of, which the program does not have
     """
+
+    ENTRY: ClassVar = Entry("file", "files", identity=("path",))
 
     path: str
     sha256: str
@@ -37,6 +42,11 @@ class FileEntry:
     reason: str = ""
     line: int | None = None
     column: int | None = None
+    placed: bool = False
+    awaits: str | None = None
+
+    def __str__(self) -> str:
+        return self.reason if self.placed else f"{self.path}: {self.reason}"
 
     def rejected(self, *errors: RawFileError) -> FileEntry:
         """Give the entry as rejected for these reasons, beside those that it is rejected for."""
@@ -44,9 +54,10 @@ class FileEntry:
         if self.status == "rejected":
             return replace(self, reason="\n".join([self.reason, *reasons]))
         first = errors[0]
-        line, column = (first.line, first.column) if first.path == self.path else (None, None)
+        own = first.path == self.path
+        line, column = (first.line, first.column) if own else (None, None)
         reason = "\n".join(reasons)
-        return replace(self, status="rejected", reason=reason, line=line, column=column)
+        return replace(self, status="rejected", reason=reason, line=line, column=column, placed=own)
 
     @property
     def violates(self) -> bool:

@@ -194,23 +194,23 @@ _PLAIN: dict[Any, Kind] = {
 }
 
 
-def kind_of(hint: Any) -> Kind:
+def kind_of(declared: Any) -> Kind:
     """Tell from the type of a field how it is written.
 
     Raises
     ------
     TypeError : there is no kind for this type
     """
-    if hint in _PLAIN:
-        return _PLAIN[hint]
-    origin, arguments = get_origin(hint), get_args(hint)
+    if declared in _PLAIN:
+        return _PLAIN[declared]
+    origin, arguments = get_origin(declared), get_args(declared)
     if origin is Annotated:
         kinds = [mark for mark in arguments[1:] if isinstance(mark, Kind)]
         inner, empty = _without_none(arguments[0])
         kind = kinds[0] if kinds else kind_of(inner)
         return nullable(kind) if empty else kind
     if origin in (Union, types.UnionType):
-        inner, empty = _without_none(hint)
+        inner, empty = _without_none(declared)
         if empty:
             return nullable(kind_of(inner))
     if origin is Literal:
@@ -218,14 +218,14 @@ def kind_of(hint: Any) -> Kind:
     if origin is tuple and arguments[-1] is Ellipsis:
         inner = arguments[0]
         return _rows(inner) if hasattr(inner, "ENTRY") else array(kind_of(inner))
-    raise TypeError(f"no kind of `core.kinds` is known for {hint}")
+    raise TypeError(f"no kind of `core.kinds` is known for {declared}")
 
 
-def _without_none(hint: Any) -> tuple[Any, bool]:
-    left = [part for part in get_args(hint) if part is not types.NoneType]
-    if get_origin(hint) in (Union, types.UnionType) and len(left) == 1:
+def _without_none(declared: Any) -> tuple[Any, bool]:
+    left = [part for part in get_args(declared) if part is not types.NoneType]
+    if get_origin(declared) in (Union, types.UnionType) and len(left) == 1:
         return left[0], True
-    return hint, False
+    return declared, False
 
 
 def _rows(cls: Any) -> Kind:

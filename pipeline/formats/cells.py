@@ -207,16 +207,17 @@ def _refusal(
     file: RawFile, line: str, at: int, fields: list[str], column: int, dialect: Dialect
 ) -> RawFileError:
     """Say why a field is not a number."""
-    reason, mend = _why(fields[column], dialect)
-    if reason == _NOT_A_NUMBER[0] and not any(looks_numeric(field) for field in fields):
+    found = _why(fields[column], dialect)
+    if found is None and not any(looks_numeric(field) for field in fields):
         return _text_row(file, line, at)
+    reason, mend = found or _NOT_A_NUMBER
     return RawFileError(
         file.path, reason, line=at, column=column + 1, value=fields[column], mend=mend
     )
 
 
-def _why(field: str, dialect: Dialect) -> tuple[str, str]:
-    """Give reason and mend for a field that `_value` does not read."""
+def _why(field: str, dialect: Dialect) -> tuple[str, str] | None:
+    """Give reason and mend for a field that `_value` does not read, None if it is no number."""
     plain = field.strip('"') if dialect.quoted else field
     if dialect.decimal == "," and "." in plain and is_number(plain):
         return "a decimal point in a file with decimal commas", "export with one decimal mark"
@@ -240,7 +241,7 @@ def _why(field: str, dialect: Dialect) -> tuple[str, str]:
     for pattern, reason, mend in _REASONS:
         if pattern.fullmatch(plain):
             return reason, mend
-    return _NOT_A_NUMBER
+    return None
 
 
 def _text_row(file: RawFile, line: str, at: int) -> RawFileError:

@@ -106,9 +106,9 @@ def lines_text(lines: Iterable[float]) -> str:
 
 def _left_out(readings: Sequence[Reading]) -> list[Flag]:
     flags = []
-    for why in dict.fromkeys(r.missing for r in readings if r.missing):
-        lines = [r.line for r in readings if r.missing == why]
-        flags.append(Flag(why, f"{len(lines)} readings left out: lines {lines_text(lines)}"))
+    for missing in dict.fromkeys(r.missing for r in readings if r.missing):
+        lines = [r.line for r in readings if r.missing == missing]
+        flags.append(Flag(missing, f"{len(lines)} readings left out: lines {lines_text(lines)}"))
     return flags
 
 

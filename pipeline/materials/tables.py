@@ -27,11 +27,6 @@ CREATE TABLE release (
     version TEXT NOT NULL, code TEXT NOT NULL,
     stages TEXT NOT NULL, environment TEXT NOT NULL, config TEXT NOT NULL
 ) STRICT;
-CREATE TABLE files (
-    path TEXT PRIMARY KEY, sha256 TEXT NOT NULL, size INTEGER NOT NULL, role TEXT NOT NULL,
-    status TEXT NOT NULL, manifest TEXT NOT NULL, reason TEXT NOT NULL,
-    line INTEGER, "column" INTEGER
-) STRICT, WITHOUT ROWID;
 CREATE TABLE failures (
     stage TEXT, subject TEXT, error TEXT NOT NULL, traceback TEXT NOT NULL, files TEXT NOT NULL,
     PRIMARY KEY (stage, subject)
@@ -88,7 +83,13 @@ def _owned_table(cls: Any) -> str:
 ENTRIES = tuple(field.kind.rows_of for field in listed_in(MaterialCard))
 OWNED = tuple(dict.fromkeys(field.kind.rows_of for cls in ENTRIES for field in listed_in(cls)))
 TABLES = "".join(
-    [_LEDGER, _table(MaterialCard), *map(_entry_table, ENTRIES), *map(_owned_table, OWNED)]
+    [
+        _LEDGER,
+        _table(FileEntry),
+        _table(MaterialCard),
+        *map(_entry_table, ENTRIES),
+        *map(_owned_table, OWNED),
+    ]
 )
 
 # Kept as PRAGMA user_version: it changes with the tables, and nobody has to think of it.

@@ -72,6 +72,5 @@ def audit_text(document: dict[str, Any]) -> str:
 
 
 def _line(entry: FileEntry) -> str:
-    reason = entry.reason if entry.path in entry.reason else f"{entry.path}: {entry.reason}"
-    reason = reason.replace("\n", "\n  ")  # one line for each bad row
-    return f"[{entry.manifest}] {reason}" if entry.manifest != "ok" else reason
+    said = str(entry).replace("\n", "\n  ")  # one line for each bad row
+    return f"[{entry.manifest}] {said}" if entry.manifest != "ok" else said

@@ -52,7 +52,7 @@ def describe(
         ],
         "waiting": _waiting(files),
         "rejected": [
-            {"path": f.path, "line": f.line, "column": f.column, "reason": _with_path(f)}
+            {"path": f.path, "line": f.line, "column": f.column, "reason": str(f)}
             for f in files
             if f.status == "rejected"
         ],
@@ -65,13 +65,10 @@ def describe(
             if e.path not in {f.path for f in files}
         ],
         "redone": [str(r) for r in bench.book.redone],
+        "redone_by_stage": Counter(r.stage for r in bench.book.redone),
         "release": release,
         "cards": str(bench.folders.processed / "cards"),
     }
-
-
-def _with_path(entry: FileEntry) -> str:
-    return entry.reason if entry.path in entry.reason else f"{entry.path}: {entry.reason}"
 
 
 def _waiting(files: Sequence[FileEntry]) -> list[dict[str, Any]]:
@@ -79,7 +76,7 @@ def _waiting(files: Sequence[FileEntry]) -> list[dict[str, Any]]:
     counts = Counter(
         f"{f.path.partition('/')[0]}: {f.reason}"
         for f in files
-        if f.status == "refused" and f.reason.startswith("no technique")
+        if f.status == "refused" and f.awaits is not None
     )
     return [{"reason": reason, "files": n} for reason, n in sorted(counts.items())]
 

@@ -140,10 +140,7 @@ def _account(surveys: list[Survey], measured: list[Measured]) -> list[FileEntry]
         if reduced.error is not None:
             error = reduced.error
             path = path or error.path
-            entries[path] = replace(
-                entries[path], status="rejected", reason=str(error),
-                line=error.line, column=error.column,
-            )  # fmt: skip
+            entries[path] = entries[path].rejected(error)
         elif path and reduced.measurement and not reduced.measurement.values:
             why = "; ".join(f"{r.key}: {r.reason}" for r in reduced.measurement.refusals)
             entries[path] = replace(entries[path], status="refused", reason=why)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -41,9 +40,8 @@ def text(document: Mapping[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def redone(reasons: Iterable[str]) -> str:
-    """Count what was redone, stage by stage."""
-    counts = Counter(reason.partition(" ")[0] for reason in reasons)
+def redone(counts: Mapping[str, int]) -> str:
+    """Say how much was redone of each stage."""
     if not counts:
         return "redone     nothing"
     return "redone     " + ", ".join(f"{n} {stage}" for stage, n in counts.items())

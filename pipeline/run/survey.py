@@ -107,7 +107,8 @@ def without_survey(
 
 def failed(entry: FileEntry, failure: Failure) -> FileEntry:
     """Say of a file that the program failed over it."""
-    return replace(entry, status="failed", reason=f"internal error: {failure.error}")
+    reason = f"internal error: {failure.error}"
+    return replace(entry, status="failed", reason=reason, placed=False)
 
 
 def _text(path: str) -> bool:
@@ -190,7 +191,7 @@ def _register(
             if file in result.entries and result.entries[file].status != "excluded":
                 role: Role = "register" if file == path else "recording"
                 result.entries[file] = replace(
-                    result.entries[file], role=role, status="refused", reason=reason
+                    result.entries[file], role=role, status="refused", reason=reason, awaits=name
                 )
         return
     form = techniques[name].register

@@ -60,7 +60,7 @@ def test_a_register_of_another_name_is_rejected(tmp_path: Path) -> None:
         seen = look(tmp_path / technique, {f"{technique}/{name}": OBSERVATIONS})
         entry = seen.entries[f"{technique}/{technique}/{name}"]
         assert (entry.role, entry.status) == ("register", "rejected")
-        assert entry.reason == (
+        assert str(entry) == (
             f"{technique}/{technique}/{name}: the register of {technique} is called {right}; "
             "give it that name"
         )

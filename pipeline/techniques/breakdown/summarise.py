@@ -322,7 +322,7 @@ def _refused(sample: Sample, error: FitRefused) -> list[Refusal]:
     return [
         Refusal(
             key, reason, specimen.material, specimen.campaign, None, sample.conditions,
-            error.diagnostics,
+            diagnostics=error.diagnostics,
         )
         for key in YIELDS
     ]  # fmt: skip

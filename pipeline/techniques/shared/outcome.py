@@ -51,7 +51,7 @@ def refusal(
         specimen.campaign,
         specimen.id,
         {**specimen.conditions, **conditions},
-        error.diagnostics,
+        diagnostics=error.diagnostics,
     )
 
 

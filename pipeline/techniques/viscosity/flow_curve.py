@@ -187,8 +187,8 @@ def _value(
         f"the reading; {curve.reason}",
         conditions,
         lines,
-        curve.diagnostics,
-        flags,
+        diagnostics=curve.diagnostics,
+        flags=flags,
     )
 
 
