@@ -21,14 +21,11 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.coverage_truth import NOT_ON_CARDS, LIMIT_Pas, liquid_at, table_of, truth_of
+from benchmarks.in_memory import Campaign, summaries
 from benchmarks.timing import write_results
 from deamat.core.config import Config, load_config
-from deamat.core.records import Law, Measurement, PropertyRecord, Specimen, Summary
-from deamat.core.register import read_register
-from deamat.core.technique import AnyTechnique, Context
-from deamat.formats.detect import detect
-from deamat.formats.rawfile import RawFile
-from deamat.run.measure import in_order, needs_met
+from deamat.core.records import Law, PropertyRecord
+from deamat.run.measure import in_order
 from deamat.techniques import TECHNIQUES
 from deamat.twin.campaign import NAME, PARTS
 from deamat.twin.truth import true_viscosities
@@ -42,9 +39,6 @@ _LAW = " (law)"
 # A part is made in the module that bears its technique's name.
 _MAKERS = {make.__module__.rpartition(".")[2]: make for make in PARTS}
 SIMULATED = tuple(key for key in TECHNIQUES if key in _MAKERS)
-
-Records = dict[tuple[str, str], list[PropertyRecord]]
-Laws = dict[str, dict[str, Law]]  # by material and property
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,13 +103,14 @@ def answers(
     parts = [make(seed) for technique, make in _MAKERS.items() if technique in techniques]
     files = {path: data for part in parts for path, data in part.files.items()}
     truth = table_of(parts)
-    records: Records = {}
-    laws: Laws = defaultdict(dict)
+    records: dict[str, list[PropertyRecord]] = defaultdict(list)
+    laws: dict[str, dict[str, Law]] = defaultdict(dict)
+    campaign = Campaign(NAME, files, records, laws)
     found: list[Answer] = []
     for technique in in_order({key: t for key, t in TECHNIQUES.items() if key in techniques}):
-        for summary in _summaries(technique, files, materials, records, laws):
+        for summary in summaries(technique, campaign, _config(), materials):
             for record in summary.records:
-                records.setdefault((NAME, record.material), []).append(record)
+                records[record.material].append(record)
                 exact = record.bound == "exact"
                 true = truth_of(record, truth)
                 found.append(Answer(seed, record.key, *record.ci95, true, exact))
@@ -132,46 +127,6 @@ def _along(law: Law, seed: int) -> Iterator[Answer]:
         for time_s in np.linspace(*law.valid, _TIMES_OF_LAW).tolist():
             true = liquid_at(liquid, law.key, time_s, rate or 1.0)
             yield Answer(seed, f"{law.key}{_LAW}", *law.ci95(time_s, rate), true)
-
-
-def _summaries(
-    technique: AnyTechnique,
-    files: Mapping[str, bytes],
-    materials: Collection[str] | None,
-    records: Records,
-    laws: Laws,
-) -> Iterator[Summary]:
-    path = f"{technique.key}/{technique.register.file}"
-    config = _config()
-    register = read_register(
-        files[path], f"{NAME}/{path}", NAME, technique.key, technique.required,
-        config.instruments.gauges, technique.register,
-    )  # fmt: skip
-    groups: dict[tuple[object, ...], list[Measurement]] = defaultdict(list)
-    for specimen in register.specimens:
-        if materials is None or specimen.material in materials:
-            group = (specimen.material, *sorted(specimen.conditions.items()))
-            groups[group].append(_measure(technique, specimen, files, records))
-    settings = config.methods[technique.key]
-    _, machine = config.instruments.machine("")
-    for measurements in groups.values():
-        known = laws[measurements[0].specimen.material]
-        yield technique.summarise(measurements, Context(settings, machine, {}, laws=known))
-
-
-def _measure(
-    technique: AnyTechnique, specimen: Specimen, files: Mapping[str, bytes], records: Records
-) -> Measurement:
-    config = _config()
-    _, machine = config.instruments.machine(specimen.notes.get("instrument", ""))
-    given = records.get((specimen.campaign, specimen.material), [])
-    found = needs_met(technique, specimen, given)
-    recording = None
-    if specimen.file is not None:
-        raw = RawFile(specimen.file, files[specimen.file.partition("/")[2]])
-        recording = detect(raw).read(raw)
-    context = Context(config.methods[technique.key], machine, found)
-    return technique.reduce(specimen, recording, context)
 
 
 def by_key(found: Iterable[Answer]) -> dict[str, list[Answer]]:

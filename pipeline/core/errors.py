@@ -69,11 +69,19 @@ class FitRefused(PipelineError):
     ----------
     reason : why, with the numbers found and the numbers needed
     diagnostics : what was measured on the way
+    selective : it was refused for its size, so that the mean of those that were not is biased
     """
 
-    def __init__(self, reason: str, diagnostics: Mapping[str, float | int | str] | None = None):
+    def __init__(
+        self,
+        reason: str,
+        diagnostics: Mapping[str, float | int | str] | None = None,
+        *,
+        selective: bool = False,
+    ) -> None:
         super().__init__(reason, diagnostics)
         self.reason = reason
+        self.selective = selective
         self.diagnostics = dict(diagnostics or {})
 
     def __str__(self) -> str:

@@ -35,6 +35,13 @@ _TABLE = (
         "ASTM D638 annex A1, tangent to zero stress",
     ),
     PropertyKey("tensile_modulus", "Y_t", "Pa", (1e3, 1e8), "ASTM D412, slope over 0-1 %"),
+    PropertyKey(
+        "tensile_modulus_toe_compensated",
+        "Y_t,toe",
+        "Pa",
+        (1e3, 1e8),
+        "ASTM D638 annex A1, counted from where the strip is taut",
+    ),
     PropertyKey("tensile_strength", "sigma_b", "Pa", (1e3, 1e8), "ASTM D412"),
     PropertyKey("elongation_at_break", "eps_b", "1", (0.05, 30.0), "ASTM D412"),
     PropertyKey("indentation_modulus", "Y_i", "Pa", (1e3, 1e9), "ISO 14577-1"),

@@ -145,6 +145,8 @@ class MeasuredValue:
     quantity : value with uncertainty; `budget` lists where that comes from
     method : estimator and window in words
     conditions : what the technique itself fixes (window, rate)
+    bound : "lower" where the truth is only known to exceed the value
+    degrees_of_freedom : of its independent uncertainty; infinite where that counts as known
     lines : first and last line of the file that the value rests on, None without a file
     diagnostics : numbers worth keeping (samples in the window, r, slope per bin)
     """
@@ -157,11 +159,19 @@ class MeasuredValue:
     lines: tuple[int, int] | None = None
     diagnostics: Mapping[str, Detail] = field(default_factory=dict)
     flags: tuple[Flag, ...] = ()
+    bound: Literal["exact", "lower"] = "exact"
+    degrees_of_freedom: float = math.inf
 
 
 @dataclass(frozen=True, slots=True)
 class Refusal:
-    """A value that was asked for and not given, and why."""
+    """A value that was asked for and not given, and why.
+
+    Parameters
+    ----------
+    selective : refused for its size (a slope within its noise), so that the mean of the specimens
+        that were not is biased
+    """
 
     ENTRY: ClassVar = Entry("refusal", "refusals")
 
@@ -174,6 +184,7 @@ class Refusal:
     )
     conditions: Mapping[str, Condition] = field(default_factory=dict)
     diagnostics: Mapping[str, Detail] = field(default_factory=dict)
+    selective: bool = False
 
 
 class Result(Protocol):

@@ -22,7 +22,7 @@ class Mean:
     sd : standard deviation of the values; None for one value
     u_independent : `sd / sqrt(n)`; for one value its own
     u_shared : as given, not divided by anything
-    degrees_of_freedom : of the combined uncertainty; infinite for one value
+    degrees_of_freedom : of the combined uncertainty
     ci95 : 95 % confidence interval
     """
 
@@ -46,7 +46,9 @@ def coverage_factor(degrees_of_freedom: float) -> float:
     return float(stdtrit(min(degrees_of_freedom, 1e6), 0.975))
 
 
-def mean_with_shared(values: Sequence[float], u_own: float, u_shared: float) -> Mean:
+def mean_with_shared(
+    values: Sequence[float], u_own: float, u_shared: float, dof_own: float = math.inf
+) -> Mean:
     r"""Average values that scatter independently and share one further error.
 
     $$ u_c^2 = \frac{s^2}{n} + u_\mathrm{shared}^2, \qquad
@@ -63,6 +65,7 @@ def mean_with_shared(values: Sequence[float], u_own: float, u_shared: float) -> 
     u_own : independent standard uncertainty of a single value; used only when n = 1, where the
         scatter between specimens cannot be seen
     u_shared : standard uncertainty of the error common to all values
+    dof_own : degrees of freedom of `u_own`
 
     Raises
     ------
@@ -76,16 +79,33 @@ def mean_with_shared(values: Sequence[float], u_own: float, u_shared: float) -> 
     # exact sums: the order of the specimens must not show in the last digit
     mean = math.fsum(values) / n
     if n == 1:
-        sd, independent, dof = None, u_own, math.inf
+        sd, independent = None, u_own
+        dof = dof_own * (1.0 + (u_shared / u_own) ** 2) ** 2 if u_own > 0.0 else math.inf
     else:
         sd = math.sqrt(math.fsum((v - mean) ** 2 for v in values) / (n - 1))
         independent = sd / math.sqrt(n)
         ratio = u_shared / independent if independent > 0.0 else math.inf
         dof = (n - 1) * (1.0 + ratio * ratio) ** 2 if math.isfinite(ratio) else math.inf
     half = coverage_factor(dof) * math.hypot(independent, u_shared)
-    if n > 1:
-        half = max(half, coverage_factor(n - 1) * independent)
+    half = max(half, coverage_factor(n - 1 if n > 1 else dof_own) * independent)
     return Mean(mean, n, sd, independent, u_shared, dof, (mean - half, mean + half))
+
+
+def positive_interval(mean: Mean) -> tuple[float, float]:
+    r"""Return the 95 % interval of a positive quantity: on a log scale where zero is near.
+
+    $m \, e^{\pm h/m}$ with the half width h where $m - h \le 0$, else the symmetric interval: an
+    interval that includes zero says nothing of a modulus, a strength or a permittivity.
+
+    Parameters
+    ----------
+    mean : of positive values
+    """
+    low, high = mean.ci95
+    if low > 0.0 or mean.value <= 0.0:
+        return low, high
+    factor = math.exp(min((high - mean.value) / mean.value, 700.0))
+    return mean.value / factor, mean.value * factor
 
 
 def outliers(values: Sequence[float], significance: float = 0.01) -> tuple[int, ...]:

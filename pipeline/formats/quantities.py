@@ -63,6 +63,21 @@ STANDARD: dict[str, tuple[str, tuple[str, ...]]] = {
             "dehnung",
         ),
     ),
+    "extensometer_strain": (
+        "1",
+        (
+            "extensometer strain",
+            "strain 1",
+            "strain 2",
+            "video strain",
+            "extensometer",
+            "tensile strain (strain 1)",
+            "tensile strain (strain 2)",
+            "compressive strain (strain 1)",
+            "strain (extensometer)",
+            "tensile strain (extensometer)",
+        ),
+    ),
     "nominal_stress_Pa": (
         "Pa",
         (
@@ -87,13 +102,15 @@ _MEANING = {
     for name, (_, labels) in STANDARD.items()
     for rank, label in enumerate(labels)
 }
-_REMARK = re.compile(r"\s*\([^()]*\)$")  # Bluehill: `Tensile strain (Extension)`
+# Bluehill: `Tensile strain (Extension)` is the crosshead's, `Tensile strain (Strain 1)` is not
+_REMARK = re.compile(r"\s*\([^()]*\)$")
 
 
 @lru_cache(maxsize=256)  # the files of a campaign have the same labels
 def meaning(label: str) -> tuple[int, str] | None:
     """Give rank and standard name of a label, or None for a label outside the table."""
-    return _MEANING.get(_REMARK.sub("", label).casefold())
+    plain = label.casefold()
+    return _MEANING.get(plain) or _MEANING.get(_REMARK.sub("", plain))
 
 
 def own_name(label: str, si_unit: str) -> str:

@@ -80,7 +80,7 @@ MACHINES = (
     Trap(
         "2.3 % strain per sample.", "no second sample below 1 %", pulled(), "tension", STRIP,
         values={"tensile_strength": 5e5},
-        refused="1 sample in the window of 0-1 % strain, 10 are needed",
+        refused="1 sample in the window of 0-1 % strain, 5 are needed",
     ),
     _as_it_is(
         "CRLF, timestamp, `Units: N`, `X-Axis: Travel`, `Travel Unit: mm`, tab-separated `Reading "

@@ -24,7 +24,7 @@ class Rupture:
     Parameters
     ----------
     end : the load collapsed, the machine turned before it did, or the record stops under load
-    last : index of the last sample that still carries load
+    last : index of the last sample before the break; of the greatest stress without one
     maximum : index of the greatest stress up to there
     first_after : index of the first sample after the break, None without one
     """
@@ -53,13 +53,13 @@ def find_rupture(strain: FloatArray, stress: FloatArray, drop: float) -> Rupture
     last = int(carrying[-1])
     if last + 1 == stress.size:
         turned = strain[maximum:].max() - strain[-1] > _BACK * strain.max()
-        return _unbroken(strain, stress, "reversed" if turned else "stopped")
+        return _unbroken(stress, "reversed" if turned else "stopped")
     after = last + 1
     gone_back = float(strain[:after].max() - strain[after])
     if gone_back <= _BACK * float(strain.max()):
         return Rupture("broke", last, int(stress[:after].argmax()), after)
     if _carries_on_return(strain, stress, after, drop):
-        return _unbroken(strain, stress, "reversed")
+        return _unbroken(stress, "reversed")
     return Rupture("broke", last, int(stress[:after].argmax()), after)
 
 
@@ -74,9 +74,9 @@ def _carries_on_return(strain: FloatArray, stress: FloatArray, after: int, drop:
     return bool(np.median(stress[tail] / np.maximum(there, 1e-300)) > _ON_CURVE * (1.0 - drop))
 
 
-def _unbroken(strain: FloatArray, stress: FloatArray, end: End) -> Rupture:
+def _unbroken(stress: FloatArray, end: End) -> Rupture:
     top = int(stress.argmax())
-    return Rupture(end, top if end == "reversed" else max(top, int(strain.argmax())), top, None)
+    return Rupture(end, top, top, None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,10 +112,13 @@ def find_slip(strain: FloatArray, stress: FloatArray, last: int) -> Slip | None:
     sudden = (y[:-1] - y[1:] > np.maximum(_SLIP * np.abs(y[:-1]), 8.0 * noise)) & forward
     sudden &= y[:-1] > 0.1 * float(y.max())
     found = []
-    for i in np.flatnonzero(sudden):
+    for i in np.flatnonzero(sudden).tolist():
+        drop = float(y[i] - y[i + 1])
+        wild = i > 0 and y[i - 1] - y[i + 1] < 0.5 * drop  # one sample too high
+        lost_sample = i + 2 < y.size and y[i] - y[i + 2] < 0.5 * drop  # or one too low
         risen = float(y[i + 1 :].max() - y[i + 1])
-        if risen > _RECOVERED * float(lost[i]):
-            found.append(int(i))
+        if not wild and not lost_sample and risen > _RECOVERED * float(lost[i]):
+            found.append(i)
     if not found:
         return None
     first = found[0]

@@ -1,4 +1,4 @@
-"""Parts of a stress-strain curve: loading branch, strain window, bins, zero of a toe, break."""
+"""Parts of a stress-strain curve: loading branch, strain window, bins, zero of a toe."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def window(
         name = _window_name(low, high)
         raise FitRefused(
             f"{n} {'sample' if n == 1 else 'samples'} in the window of {name}, {min_samples} are "
-            f"needed; {_denser(strain, low, high, min_samples)}",
+            f"needed (`min_samples`); {_denser(strain, low, high, min_samples)}",
             found,
         )
     x = strain[inside]
@@ -206,39 +206,3 @@ def zero_of_tangent(bins: Bins) -> float:
     if not slope > 0.0:
         raise FitRefused(f"the steepest part of the window does not rise (slope {slope:.4g})")
     return bins.mean_x[k] - bins.mean_y[k] / slope
-
-
-@dataclass(frozen=True, slots=True)
-class Break:
-    """Where a specimen broke.
-
-    Parameters
-    ----------
-    maximum : index of the greatest stress
-    last : index of the last sample that still carries load; of the maximum if no break was seen
-    seen : the load collapsed within the recording
-    """
-
-    maximum: int
-    last: int
-    seen: bool
-
-
-def find_break(stress: FloatArray, branch: int, drop: float) -> Break:
-    """Find the break: after it, stress stays below `1 - drop` of the maximum.
-
-    Parameters
-    ----------
-    stress : nominal stress of the whole recording, tension positive, shape (n,) `[Pa]`
-    branch : samples of the loading branch; the one after it may show the collapse, whatever the
-        strain is there (exports fill up with zeros after a break), later ones may not: they may be
-        an unloading
-    drop : part of the maximum by which the load must fall
-    """
-    seen = stress[: branch + 1]
-    maximum = int(seen[:branch].argmax())
-    carrying = np.flatnonzero(seen >= (1.0 - drop) * seen[maximum])
-    last = int(carrying[-1])
-    if last + 1 < seen.size:
-        return Break(maximum, last, True)
-    return Break(maximum, maximum, False)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from deamat.core.errors import FitRefused
 from deamat.core.properties import property_key
 from deamat.core.quantity import Contribution, Quantity
 from deamat.core.records import (
+    Bound,
     Condition,
     Detail,
     Flag,
@@ -16,10 +18,12 @@ from deamat.core.records import (
     Measurement,
     Origin,
     PropertyRecord,
+    Refusal,
     Result,
     Summary,
 )
-from deamat.estimators.mean import mean_with_shared, outliers
+from deamat.estimators.censored_mean import mean_with_limits
+from deamat.estimators.mean import Mean, mean_with_shared, outliers, positive_interval
 
 Pair = tuple[Measurement[Result], MeasuredValue]
 
@@ -50,7 +54,21 @@ def summarise_by_mean(
         for key in keys
         for pairs, conditions in _alike([(m, v) for m in ordered for v in m.values if v.key == key])
     )
-    return Summary(records, refusals=tuple(r for m in ordered for r in m.refusals))
+    refusals = tuple(r for m in ordered for r in m.refusals)
+    return Summary(tuple(_beside_refused(r, refusals) for r in records), refusals=refusals)
+
+
+def _beside_refused(record: PropertyRecord, refusals: Sequence[Refusal]) -> PropertyRecord:
+    """Flag a mean of which other specimens were left out for their size: it is biased."""
+    left_out = [r for r in refusals if r.key == record.key and r.selective]
+    if not left_out:
+        return record
+    survivors = Flag(
+        "survivors",
+        f"{len(left_out)} of {record.n + len(left_out)} specimens were refused because their slope "
+        "could not be told from zero: the mean of the others is biased high",
+    )
+    return replace(record, flags=(*record.flags, survivors))
 
 
 def _alike(pairs: Sequence[Pair]) -> Iterator[tuple[list[Pair], dict[str, Condition]]]:
@@ -78,33 +96,59 @@ def _record(
     pairs: Sequence[Pair], conditions: Mapping[str, Condition], technique: str
 ) -> PropertyRecord:
     specimen, first = pairs[0][0].specimen, pairs[0][1]
-    values = [v.quantity.value for _, v in pairs]
-    n = len(values)
-    unit = first.quantity.unit
+    n = len(pairs)
     shared = _shared_lines(pairs)
-    mean = mean_with_shared(
-        values, first.quantity.u_independent, math.sqrt(math.fsum(c.u**2 for c in shared))
-    )
+    found = _mean(pairs, math.sqrt(math.fsum(c.u**2 for c in shared)))
     if n == 1:
         budget = first.budget
     else:
-        scatter = Contribution("scatter between specimens", mean.u_independent, shared=False)
+        scatter = Contribution("scatter between specimens", found.mean.u_independent, shared=False)
         budget = (scatter, *shared)
     return PropertyRecord(
         key=first.key,
         material=specimen.material,
         campaign=specimen.campaign,
-        quantity=Quantity.from_budget(mean.value, unit, budget),
+        quantity=Quantity.from_budget(found.mean.value, first.quantity.unit, budget),
         n=n,
-        sd=mean.sd,
-        ci95=mean.ci95,
+        sd=found.mean.sd,
+        ci95=found.ci95,
         conditions=conditions,
-        method=first.method if n == 1 else f"mean of {n} specimens; {first.method}",
+        method=first.method if n == 1 else f"{found.method} of {n} specimens; {first.method}",
         budget=budget,
         origins=tuple(origin_of(m, v, technique) for m, v in pairs),
-        flags=merged_flags(pairs) + _flags_of_mean(pairs, mean.value),
-        diagnostics=_diagnostics(pairs, mean.degrees_of_freedom),
+        flags=merged_flags(pairs) + _flags_of_mean(pairs, found.mean.value),
+        diagnostics=_diagnostics(pairs, found.mean.degrees_of_freedom),
+        bound=found.bound,
     )
+
+
+@dataclass(frozen=True, slots=True)
+class _Found:
+    """A mean, its interval, what kind of limit it is and how it was made."""
+
+    mean: Mean
+    ci95: tuple[float, float]
+    bound: Bound
+    method: str
+
+
+def _mean(pairs: Sequence[Pair], u_shared: float) -> _Found:
+    """Average exact values and lower limits; too few exact ones leave a lower limit."""
+    values = [v.quantity.value for _, v in pairs]
+    limits = [v.bound == "lower" for _, v in pairs]
+    own = pairs[0][1]
+    if any(limits):
+        try:
+            censored = mean_with_limits(values, limits, u_shared)
+        except FitRefused:
+            at_least = mean_with_shared(values, own.quantity.u_independent, u_shared)
+            ci95 = (at_least.value, math.inf)
+            return _Found(at_least, ci95, "lower", "mean, at least: unbroken ones at their limits,")
+        how = f"mean, {sum(limits)} unbroken ones as lower limits (maximum likelihood),"
+        return _Found(censored, positive_interval(censored), "exact", how)
+    mean = mean_with_shared(values, own.quantity.u_independent, u_shared, own.degrees_of_freedom)
+    interval = mean.ci95 if min(values) < 0.0 else positive_interval(mean)
+    return _Found(mean, interval, "exact", "mean")
 
 
 def _shared_lines(pairs: Sequence[Pair]) -> tuple[Contribution, ...]:

@@ -12,8 +12,11 @@ from deamat.core.quantity import Contribution, Quantity
 from deamat.core.records import Condition, Flag, MeasuredValue, Recording, Specimen
 from deamat.estimators.curves.slope import FEW_INDEPENDENT, Line, fit_line, outlying
 from deamat.estimators.curves.stress_strain import reloads
+from deamat.estimators.mean import coverage_factor
 from deamat.techniques.shared.outcome import line_span, relative_lines
 from deamat.techniques.shared.stress_strain import IndexArray, StressStrain
+
+_RISES = 0.8  # of the variance of stress that a line explains: such a window is no noise
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,10 +72,11 @@ def conditions_of_test(
 
 def flags_of_loading(recording: Recording, curve: StressStrain, branch: int) -> tuple[Flag, ...]:
     """Pass on what the reader noticed, and flag a specimen that was loaded more than once."""
+    noticed = recording.flags + curve.flags
     if not reloads(curve.nominal_strain, branch):
-        return recording.flags
+        return noticed
     several = Flag("several-loadings", f"only the first, samples 1 to {branch}, was used")
-    return (*recording.flags, several)
+    return (*noticed, several)
 
 
 def percent(window: tuple[float, float]) -> str:
@@ -85,17 +89,34 @@ def rising_line(strain: FloatArray, stress_Pa: FloatArray, min_samples: int) -> 
 
     Raises
     ------
-    FitRefused : the slope is zero or negative
+    FitRefused : the slope is zero or negative, or its 95 % interval includes zero; values that
+        are not refused for that are a selection, and `selective` says so
     """
     line = fit_line(strain, stress_Pa)
-    if not line.slope > 0.0:
+    found: dict[str, float | int | str] = {
+        "samples": line.n, "samples_needed": min_samples, "slope_Pa": line.slope,
+    }  # fmt: skip
+    half = coverage_factor(line.degrees_of_freedom) * line.standard_error
+    explained = line.slope**2 * line.sum_squares_x
+    noise = (line.n - 2) * line.residual_sd**2
+    # a curve that bends leaves correlated residuals and a rough error, but it rises all the same
+    if line.slope > half or (line.slope > 0.0 and explained > _RISES * (explained + noise)):
+        return line
+    if line.slope > 0.0 or line.slope > -half:
         raise FitRefused(
-            f"the slope of the {line.n} samples in the window ({min_samples} are needed) is "
-            f"{line.slope:.4g} Pa, not positive; check the contact, the signs and the zero of the "
-            "displacement, or use a smaller load cell",
-            {"samples": line.n, "samples_needed": min_samples, "slope_Pa": line.slope},
+            f"the slope of the {line.n} samples in the window, {line.slope:.4g} Pa, cannot be told "
+            f"from zero: its 95 % interval is {line.slope - half:.4g} to {line.slope + half:.4g} "
+            "Pa; the specimen may hang loose (slack), or the load cell is too coarse",
+            {**found, "half_width_Pa": half},
+            selective=True,
         )
-    return line
+    raise FitRefused(
+        f"the slope of the {line.n} samples in the window ({min_samples} are needed) is "
+        f"{line.slope:.4g} Pa, not positive; check the contact, the signs and the zero of the "
+        "displacement, or use a smaller load cell",
+        found,
+        selective=True,
+    )
 
 
 def slope_budget(line: Line, curve: StressStrain) -> tuple[Contribution, ...]:
@@ -181,6 +202,7 @@ def modulus(
         lines=line_span(
             recording.source, curve.nominal_strain.size, int(inside[0]), int(inside[-1])
         ),
+        degrees_of_freedom=line.degrees_of_freedom,
         diagnostics={**line_diagnostics(line), **diagnostics},
         flags=flags
         + correlation_flags(line)

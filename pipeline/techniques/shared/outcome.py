@@ -52,6 +52,7 @@ def refusal(
         specimen.id,
         {**specimen.conditions, **conditions},
         diagnostics=error.diagnostics,
+        selective=error.selective,
     )
 
 

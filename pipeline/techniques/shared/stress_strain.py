@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,8 @@ from deamat.core.errors import FitRefused
 from deamat.core.instruments import Machine
 from deamat.core.quantity import Contribution, Quantity
 from deamat.core.records import Flag, Recording
+from deamat.estimators.curves.start import find_hold, zero_of_position
+from deamat.estimators.curves.stress_strain import loading_branch
 from deamat.techniques.shared.geometry import Section, scale_budget
 
 IndexArray = NDArray[np.intp]
@@ -30,6 +32,9 @@ class StressStrain:
     stress_resolution_Pa : one step of the load cell over the area `[Pa]`
     basis : which columns and whose geometry, in words
     own : the file's own (strain, stress) where they stand beside force and displacement
+    extensometer : strain of an extensometer that stands beside the displacement, shape (n,)
+    first : index of the first sample of the test: the last one before the machine moves
+    flags : what was found at the start (an absolute position, grips that closed)
     """
 
     nominal_strain: FloatArray
@@ -39,6 +44,9 @@ class StressStrain:
     stress_resolution_Pa: float
     basis: str
     own: tuple[FloatArray, FloatArray] | None
+    extensometer: FloatArray | None = None
+    first: int = 0
+    flags: tuple[Flag, ...] = ()
 
 
 def stress_strain(
@@ -95,15 +103,46 @@ def stress_strain(
             "a stress-strain curve needs force_N and displacement_m, or nominal_strain and "
             f"nominal_stress_Pa; the file has {', '.join(sorted(columns)) or 'no columns'}"
         )
-    return StressStrain(
-        strain,
-        stress,
-        strain_budget,
-        stress_budget,
-        machine.force_resolution_N / section.area_m2,
-        basis,
-        own,
+    return _from_its_start(
+        StressStrain(
+            strain,
+            stress,
+            strain_budget,
+            stress_budget,
+            machine.force_resolution_N / section.area_m2,
+            basis,
+            own,
+            columns.get("extensometer_strain"),
+        )
     )
+
+
+def _from_its_start(curve: StressStrain) -> StressStrain:
+    """Count strain from where the test began, if the first position is no strain."""
+    hold = find_hold(curve.nominal_strain, curve.nominal_stress_Pa)
+    strain = curve.nominal_strain
+    flags: tuple[Flag, ...] = ()
+    if hold.gripping:
+        flags += (
+            Flag(
+                "grips",
+                f"the load changes by {100 * hold.load_change:.2g} % of its greatest value in the "
+                f"first {hold.last + 1} samples, before the machine moves: grips or plates closing",
+            ),
+        )
+    branch = hold.last + loading_branch(strain[hold.last :] - strain[hold.last])
+    loading = slice(hold.last, branch)
+    if zero_of_position(strain[loading], curve.nominal_stress_Pa[loading]) == "absolute":
+        start = float(strain[hold.last])
+        flags += (
+            Flag(
+                "displacement-zeroed",
+                f"displacement starts at {100 * start:.4g} % of the length without the load of "
+                "such a strain: it is the machine's position, and counts from the first sample",
+            ),
+        )
+        strain = strain - start
+    return replace(curve, nominal_strain=strain, first=hold.last, flags=flags)
 
 
 def _loading_positive(

@@ -6,10 +6,10 @@ from pydantic import Field
 
 from deamat.techniques.shared.curve_config import CurveConfig, StrainWindow
 
-MODULUS = "tensile_modulus"
+MODULI = ("tensile_modulus", "tensile_modulus_toe_compensated")
 STRENGTH = "tensile_strength"
 ELONGATION = "elongation_at_break"
-YIELDS = (MODULUS, STRENGTH, ELONGATION)
+YIELDS = (*MODULI, STRENGTH, ELONGATION)
 
 
 class TensionConfig(CurveConfig):
@@ -18,6 +18,9 @@ class TensionConfig(CurveConfig):
     window: StrainWindow = Field(
         default=(0.0, 0.01), description="nominal strain over which the slope is taken"
     )
+    min_samples: int = Field(
+        default=5, ge=5, description="fewest samples in the window that carry a slope"
+    )
     break_drop: float = Field(
-        default=0.5, gt=0, lt=1, description="part of the greatest load whose loss is a break"
+        default=0.5, gt=0, lt=1, description="fraction of the greatest load whose loss is a break"
     )

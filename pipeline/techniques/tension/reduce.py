@@ -2,51 +2,31 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
-
 from deamat.core.errors import FitRefused
-from deamat.core.quantity import Contribution, Quantity
-from deamat.core.records import (
-    Condition,
-    Flag,
-    MeasuredValue,
-    Measurement,
-    Recording,
-    Refusal,
-    Specimen,
-)
+from deamat.core.records import MeasuredValue, Measurement, Recording, Refusal, Specimen
 from deamat.core.technique import Context
-from deamat.estimators.curves.stress_strain import Break, find_break, loading_branch, window
+from deamat.estimators.curves.rupture import find_rupture
+from deamat.estimators.curves.stress_strain import loading_branch
 from deamat.techniques.shared.geometry import rectangular_section, register_length
-from deamat.techniques.shared.modulus import (
-    LoadingCurve,
-    WindowLine,
-    conditions_of_test,
-    flags_of_loading,
-    modulus,
-    percent,
-    rising_line,
-)
-from deamat.techniques.shared.outcome import (
-    line_span,
-    nothing_measured,
-    recorded,
-    refusal,
-    relative_lines,
-)
-from deamat.techniques.shared.stress_strain import StressStrain, disagreement, stress_strain
-from deamat.techniques.tension.config import ELONGATION, MODULUS, STRENGTH, YIELDS, TensionConfig
+from deamat.techniques.shared.modulus import LoadingCurve, conditions_of_test
+from deamat.techniques.shared.outcome import nothing_measured, recorded, refusal
+from deamat.techniques.shared.stress_strain import stress_strain
+from deamat.techniques.tension.config import ELONGATION, MODULI, STRENGTH, TensionConfig
+from deamat.techniques.tension.extensometer import by_extensometer
+from deamat.techniques.tension.moduli import plain_modulus, taut_modulus
+from deamat.techniques.tension.pull import Pull
+from deamat.techniques.tension.ultimate import elongation_at_break, tensile_strength
 
 
 def reduce(
     specimen: Specimen, recording: Recording | None, context: Context[TensionConfig]
 ) -> Measurement[LoadingCurve]:
-    r"""Reduce one strip to modulus, strength and elongation; each stands or falls by itself.
+    r"""Reduce one strip to moduli, strength and elongation; each stands or falls by itself.
 
-    $Y_t = d\sigma/d\varepsilon$ over the window by ordinary least squares with an intercept,
-    strength = greatest nominal stress, elongation = nominal strain of the last sample before the
-    load collapses, or of the greatest stress where no collapse was recorded (flagged).
+    $Y_t = d\sigma/d\varepsilon$ over the window by ordinary least squares with an intercept, plain
+    and counted from where the strip is taut; strength = greatest nominal stress, elongation =
+    nominal strain of the last sample before the load collapses. A strip that did not break gives
+    lower limits of both.
 
     Parameters
     ----------
@@ -54,7 +34,7 @@ def reduce(
         condition `rate_per_s`
     recording : see `shared.stress_strain.stress_strain`
 
-    Source: ASTM D412.
+    Source: ASTM D412; ASTM D638 annex A1 for slack.
     """
     config = context.config
     try:
@@ -62,116 +42,41 @@ def reduce(
         gauge = register_length(specimen.numbers, "gauge_length_m")
         section = rectangular_section(specimen.numbers)
         curve = stress_strain(file, section, gauge, "gauge length", context.machine)
+        curve = by_extensometer(curve, config)
     except FitRefused as error:
-        return nothing_measured(specimen, YIELDS, error, recording)
-    branch = loading_branch(curve.nominal_strain)
-    rupture = find_break(curve.nominal_stress_Pa, branch, config.break_drop)
-    end = rupture.last + 1 if rupture.seen else branch
-    values: list[MeasuredValue] = []
-    refusals: list[Refusal] = []
+        return nothing_measured(specimen, (MODULI[0], STRENGTH, ELONGATION), error, recording)
+    rupture = find_rupture(curve.nominal_strain, curve.nominal_stress_Pa, config.break_drop)
+    branch = min(loading_branch(curve.nominal_strain), rupture.last + 1)
+    pull = Pull(curve, file, branch, rupture, file.flags + curve.flags)
     slope_conditions = conditions_of_test(specimen, config.window, gauge)
     conditions = conditions_of_test(specimen, None, gauge)
-    flags = flags_of_loading(file, curve, branch)
+    values: list[MeasuredValue] = []
+    refusals: list[Refusal] = []
     line = None
+    slack = pull.slack(config)
     try:
-        value, line = _modulus(curve, end, file, config, slope_conditions, flags)
+        value, line = plain_modulus(pull, slack, config, slope_conditions)
         values.append(value)
     except FitRefused as error:
-        refusals.append(refusal(specimen, MODULUS, error, slope_conditions))
-    try:
-        values += _ultimate(curve, rupture, file, conditions, flags)
-    except FitRefused as error:
-        refusals += [refusal(specimen, key, error, conditions) for key in (STRENGTH, ELONGATION)]
+        refusals.append(refusal(specimen, MODULI[0], error, slope_conditions))
+    if slack is not None:
+        try:
+            values.append(taut_modulus(pull, slack, config, slope_conditions))
+        except FitRefused as error:
+            refusals.append(refusal(specimen, MODULI[1], error, slope_conditions))
+    for key, make in ((STRENGTH, tensile_strength), (ELONGATION, elongation_at_break)):
+        try:
+            values.append(make(pull, conditions))
+        except FitRefused as error:
+            refusals.append(refusal(specimen, key, error, conditions))
     return Measurement(
         specimen,
         tuple(values),
         tuple(refusals),
-        LoadingCurve(curve.nominal_strain[:end], curve.nominal_stress_Pa[:end], line),
+        LoadingCurve(
+            curve.nominal_strain[: rupture.last + 1],
+            curve.nominal_stress_Pa[: rupture.last + 1],
+            line,
+        ),
         file.source,
     )
-
-
-def _modulus(
-    curve: StressStrain,
-    end: int,
-    recording: Recording,
-    config: TensionConfig,
-    conditions: Mapping[str, Condition],
-    flags: tuple[Flag, ...],
-) -> tuple[MeasuredValue, WindowLine]:
-    low, high = config.window
-    strain, stress = curve.nominal_strain[:end], curve.nominal_stress_Pa[:end]
-    inside = window(strain, low, high, config.min_samples, config.unloading_tolerance)
-    line = rising_line(strain[inside], stress[inside], config.min_samples)
-    value = modulus(
-        MODULUS,
-        line,
-        curve,
-        inside,
-        recording,
-        method=f"OLS slope with intercept over {percent(config.window)} nominal strain",
-        conditions=conditions,
-        flags=flags + disagreement(curve, inside, config.own_columns_tolerance),
-        diagnostics={},
-    )
-    return value, WindowLine(config.window, line.slope, line.intercept)
-
-
-def _ultimate(
-    curve: StressStrain,
-    rupture: Break,
-    recording: Recording,
-    conditions: Mapping[str, Condition],
-    flags: tuple[Flag, ...],
-) -> list[MeasuredValue]:
-    """Strength and elongation from the greatest stress and the break."""
-    strain, stress = curve.nominal_strain, curve.nominal_stress_Pa
-    top, last = rupture.maximum, rupture.last
-    strength = float(stress[top])
-    if not strength > 0.0:
-        raise FitRefused(
-            f"the greatest stress of the loading is {strength:.4g} Pa, not positive; nothing was "
-            "pulled, or the force is of another sign than the displacement"
-        )
-    if not rupture.seen:
-        flags += (
-            Flag(
-                "break-not-recorded",
-                f"the load is never seen to collapse; the values are those of the greatest stress, "
-                f"sample {top + 1} of {stress.size}, and the specimen may have held more",
-            ),
-        )
-    rounding = curve.stress_resolution_Pa / math.sqrt(12.0)
-    strength_budget = relative_lines(strength, curve.stress_budget)
-    if rounding > 0.0:
-        strength_budget += (Contribution("load cell resolution", rounding, shared=False),)
-    elongation = float(strain[last])
-    # the break lies somewhere in the sampling interval
-    step = abs(float(strain[last] - strain[max(last - 1, 0)])) / math.sqrt(12.0)
-    elongation_budget = (
-        Contribution("sampling interval at break", step, shared=False),
-        *relative_lines(elongation, curve.strain_budget),
-    )
-    where = "of the last sample before the load collapses"
-    if not rupture.seen:
-        where = "at the greatest stress, the break not being recorded"
-
-    def value(
-        key: str, number: float, unit: str, budget: tuple[Contribution, ...], how: str, at: int
-    ) -> MeasuredValue:
-        line = line_span(recording.source, stress.size, at, at)
-        return MeasuredValue(
-            key=key,
-            quantity=Quantity.from_budget(number, unit, budget),
-            budget=budget,
-            method=f"{how}; {curve.basis}",
-            conditions=conditions,
-            lines=line,
-            diagnostics={"sample": at + 1, "samples": stress.size},
-            flags=flags,
-        )
-
-    return [
-        value(STRENGTH, strength, "Pa", strength_budget, "greatest nominal stress", top),
-        value(ELONGATION, elongation, "1", elongation_budget, f"nominal strain {where}", last),
-    ]

@@ -1,4 +1,4 @@
-"""Promises about the parts of a curve: what is loading, what is a window, what is a break."""
+"""Promises about the parts of a curve: what is loading, what is a window."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
 from deamat.estimators.curves.stress_strain import (
     bin_slopes,
-    find_break,
     loading_branch,
     reloads,
     window,
@@ -72,12 +71,12 @@ def test_window_holds_both_of_its_ends_however_they_round() -> None:
 
 def test_too_few_samples_are_refused_with_the_rate_that_would_do() -> None:
     assert refused(0.0446 + 0.0227 * np.arange(100.0), 0.0, 0.01) == (
-        "0 samples in the window of 0-1 % strain, 10 are needed; the first sample is at 4.46 % "
+        "0 samples in the window of 0-1 % strain, 10 are needed (`min_samples`); the first sample is at 4.46 % "
         "strain and one follows every 2.3 %: a sampling rate at least 23 times higher, or a speed "
         "as many times lower, would give enough"
     )
     assert refused(0.004 * np.arange(100.0), 0.0, 0.01).startswith(
-        "3 samples in the window of 0-1 % strain, 10 are needed; the first sample is at 0 % strain "
+        "3 samples in the window of 0-1 % strain, 10 are needed (`min_samples`); the first sample is at 0 % strain "
         "and one follows every 0.4 %: a sampling rate at least 4 times higher"
     )
     assert refused(np.array([0.2]), 0.0, 0.01).endswith("record the whole test")
@@ -96,7 +95,7 @@ def test_the_advised_rate_is_enough() -> None:
 
 def test_a_test_that_ends_before_the_window_says_so() -> None:
     assert refused(ramp(0.0, 0.005), 0.01, 0.05) == (
-        "0 samples in the window of 1-5 % strain, 10 are needed; the first sample is at 0 % strain "
+        "0 samples in the window of 1-5 % strain, 10 are needed (`min_samples`); the first sample is at 0 % strain "
         "and the greatest at 0.5 %: load further"
     )
 
@@ -174,25 +173,3 @@ def test_tangent_finds_the_zero_of_a_shifted_line() -> None:
         FitRefused, match=r"^the steepest part of the window does not rise \(slope -"
     ):
         zero_of_tangent(bin_slopes(x, -x, 0.0, 0.05, 0.01))
-
-
-STRETCH = np.linspace(0.0, 1e6, 101)
-
-
-@pytest.mark.parametrize(
-    ("stress", "branch", "maximum", "last", "seen"),
-    [
-        (STRETCH, 101, 100, 100, False),
-        (np.append(STRETCH, [0.992e6]), 102, 100, 100, False),  # a slip is not a break
-        (np.append(STRETCH, [2e3, 1e3, 0.0]), 104, 100, 100, True),
-        (np.append(STRETCH, np.zeros(5)), 101, 100, 100, True),  # exporter's zeros, strain too
-        (np.append(STRETCH, [0.9e6, 0.7e6, 0.1e6]), 104, 100, 102, True),
-        (np.append(STRETCH, STRETCH[::-1]), 101, 100, 100, False),  # unloaded, not broken
-        (np.concatenate((STRETCH[:60], [0.0], STRETCH[60:])), 102, 101, 101, False),  # a glitch
-    ],
-)
-def test_a_break_is_a_load_that_collapses_for_good(
-    stress: FloatArray, branch: int, maximum: int, last: int, seen: bool
-) -> None:
-    found = find_break(stress, branch, 0.5)
-    assert (found.maximum, found.last, found.seen) == (maximum, last, seen)

@@ -1,0 +1,8 @@
+"""Situations that laboratories have: the one list, by name. One module per technique."""
+
+from __future__ import annotations
+
+from deamat.twin.situations import tension
+from deamat.twin.situations.situation import Situation
+
+SITUATIONS: dict[str, Situation] = {s.name: s for s in (*tension.SITUATIONS,)}
