@@ -81,7 +81,7 @@ def test_too_few_samples_are_refused_with_the_rate_that_would_do() -> None:
     )
     assert refused(np.array([0.2]), 0.0, 0.01).endswith("record the whole test")
     slower_later = np.concatenate([[0.0], 0.02 + 0.002 * np.arange(100.0)])
-    assert "one follows every 0.2 %" in refused(slower_later, 0.025, 0.03)
+    assert "one follows every 0.2 %" in refused(slower_later, 0.0215, 0.03)
 
 
 def test_the_advised_rate_is_enough() -> None:
