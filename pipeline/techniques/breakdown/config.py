@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from pydantic import Field
 
 from deamat.core.instruments import Declared
-from deamat.techniques.breakdown.ramp import Criteria
+from deamat.techniques.breakdown.ramp import After, Criteria
 
 FIELD = "breakdown_field"
 STRENGTH, SHAPE, UNBIASED = "breakdown_strength", "weibull_shape", "weibull_shape_unbiased"
@@ -31,7 +33,7 @@ class BreakdownConfig(Declared):
         description="a ramp that stays below is no breakdown test, or its unit is wrong",
     )
     dip: float = Field(
-        default=0.1, gt=0, lt=1, description="part of the voltage whose loss is looked into"
+        default=0.03, gt=0, lt=1, description="part of the voltage whose loss is looked into"
     )
     collapse: float = Field(
         default=0.5, gt=0, lt=1, description="part of the voltage whose loss is a collapse"
@@ -42,6 +44,37 @@ class BreakdownConfig(Declared):
     spike_A: float = Field(default=5e-5, gt=0, description="least current of a spike")
     spike_noise: float = Field(
         default=10.0, gt=0, description="standard deviations by which a spike stands out"
+    )
+    event_A: float = Field(
+        default=1e-3,
+        gt=0,
+        description="a jump of the current to this is a breakdown even where the voltage shows no "
+        "dip; a smaller one without a dip is flagged alone",
+    )
+    arc_s: float = Field(
+        default=0.1,
+        ge=0,
+        description="the current of a breakdown lasts at least this long: a log with longer steps "
+        "may miss it, and a voltage that collapses without a current is then counted as broken "
+        "and the interval widened to what it would be had it held",
+    )
+    after_clearing: After = Field(
+        default="first breakdown",
+        description="which voltage counts where a film clears itself and bears more again: that "
+        "of the `first breakdown` or of the `final collapse`",
+    )
+    step_rule: Literal["ASTM D149", "IEC 60243-1"] = Field(
+        default="ASTM D149",
+        description="voltage that counts in a step-by-step test: of the step at which it broke "
+        "(ASTM D149, method B) or of the last one held to its end (IEC 60243-1)",
+    )
+    least_hold_s: float = Field(
+        default=5.0, gt=0, description="a voltage held this long between steps is step-by-step"
+    )
+    coarse_step: float = Field(
+        default=0.02,
+        gt=0,
+        description="rise between two samples, relative to the voltage, that is flagged",
     )
     rate_tolerance: float = Field(
         default=0.2,
@@ -87,4 +120,7 @@ class BreakdownConfig(Declared):
             self.collapse_steps,
             self.spike_A,
             self.spike_noise,
+            self.event_A,
+            self.arc_s,
+            self.after_clearing,
         )

@@ -14,7 +14,7 @@ from deamat.core.units import from_si
 from deamat.estimators.weibull.fit import fit, quantile
 from deamat.estimators.weibull.plot import confidence_band, plotting_positions, weibull_axis
 from deamat.techniques.breakdown.result import FilmTest
-from deamat.techniques.breakdown.summarise import Sample, samples
+from deamat.techniques.breakdown.sample import Sample, samples
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -1,30 +1,55 @@
-"""Finds the breakdown in a high-voltage ramp, and says how steadily the voltage rose to it.
+"""Finds the breakdown in a high-voltage ramp, by its current where that was recorded.
 
-Of a ramp only four things can become: the voltage collapses (a breakdown), it reaches the limit of
-the amplifier, somebody turns it down, or the file ends. All but the first leave a specimen unbroken
-at the greatest voltage that it has borne. A part of the voltage that is lost and comes back is a
-flashover through the air around the film: it is counted, and the ramp goes on.
+A film breaks where the current jumps and the voltage gives way: it may collapse at once, fall
+slowly while the amplifier feeds the arc, stay at what the amplifier's current limit holds, or come
+back because the film cleared itself. The first such event is the breakdown. Without a current a
+loss of voltage is a breakdown (no current channel), a flashover (it comes back) or a voltage that
+somebody turned down; where the log cannot tell, `sure` is False.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from itertools import pairwise
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from deamat.core.arrays import FloatArray
-from deamat.core.errors import FitRefused
+from deamat.techniques.breakdown.signals import (
+    current_jumps,
+    foot,
+    level_at,
+    steadied,
+    voltage_noise,
+)
 
-End = Literal["collapse", "amplifier limit", "turned down", "file ended", "flashover"]
+End = Literal[
+    "collapse",
+    "slow collapse",
+    "held by the current limit",
+    "self-clearing",
+    "collapse without current",
+    "part lost without current",
+    "amplifier limit",
+    "turned down",
+    "file ended",
+]
+After = Literal["first breakdown", "final collapse"]
 
-_FEWEST = 5  # samples with voltage on them, below which there is no ramp to speak of
-_PARTS = 8  # of the ramp, whose rates of rise are compared
-_FEWEST_IN_PART = 4
-_JUMP = 0.05  # of the greatest voltage: the step to the voltage from which the slow rise starts
-_JUMP_STEPS = 10.0  # and so many usual steps
-_FOOT = 0.02  # of the greatest voltage: below it the ramp has not begun, and all is noise
+BROKEN: tuple[End, ...] = (
+    "collapse",
+    "slow collapse",
+    "held by the current limit",
+    "self-clearing",
+    "collapse without current",
+    "part lost without current",
+)
+_LOST_NOISE = 10.0  # standard deviations: the greatest of many samples is itself 3 to 4 above
+_DIP_NOISE = 6.0  # of one sample against the one before
+_LEAST_DIP = 0.002  # of the voltage, where there is no noise
+_LEAST_LOSS = 0.02  # of the greatest voltage: ripple of a monitor matters where the ramp begins
+_PLAIN = 5e-4  # noise over voltage, below which the greatest sample is taken as it is
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,9 +59,12 @@ class Criteria:
     Parameters
     ----------
     limit_V, limit_tolerance : amplifier limit and how near to it counts as reaching it
-    dip, collapse : parts of the voltage whose loss is noticed, and is a collapse
+    dip, collapse : fractions of the voltage whose loss is noticed, and is a collapse
     collapse_steps : sampling steps within which a collapse happens
     spike_A, spike_noise : least current of a spike, and in standard deviations of what was before
+    event_A : current that is a breakdown even where the voltage shows no dip
+    arc_s : the current of a breakdown lasts at least so long
+    after_clearing : which breakdown of a film that clears itself counts
     """
 
     limit_V: float
@@ -46,6 +74,27 @@ class Criteria:
     collapse_steps: int
     spike_A: float
     spike_noise: float
+    event_A: float
+    arc_s: float
+    after_clearing: After
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """A jump of the current, or a loss of voltage.
+
+    Parameters
+    ----------
+    last : last sample before the voltage gave way
+    voltage_V : there
+    current_A : greatest around it, None without a current channel
+    lost : fraction of the voltage lost
+    """
+
+    last: int
+    voltage_V: float
+    current_A: float | None
+    lost: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,164 +103,228 @@ class Breakdown:
 
     Parameters
     ----------
-    voltage_V : greatest voltage before the end: of breakdown, or borne unbroken
+    voltage_V : of breakdown, or borne unbroken; if noisy, of the line through the last samples
+    u_V : standard uncertainty by the noise of the monitor, 0 where the greatest sample was taken
     broken : False where the specimen is right-censored at `voltage_V`
+    sure : False where the log does not tell a film that broke from one that held
     end : what ended the ramp
-    peak : sample at which `voltage_V` stands
+    peak : sample of the greatest voltage before the end
+    last : last sample before the end
     step_V : rise in the sampling step in which it broke: it may have broken so much higher
-    spike_A : greatest current around the collapse, None without a current channel or a collapse
-    flashovers : voltages at which a part was lost and came back `[V]`
+    spike_A : greatest current around the breakdown, None without a current channel or a breakdown
+    clearings : breakdowns after which the voltage came back
+    spikes : jumps of the current without a dip
+    flashovers : voltages at which a part was lost without a current, and came back `[V]`
+    noise_V : standard deviation of the voltage monitor
+    greatest_V : of the whole file
     """
 
     voltage_V: float
+    u_V: float
     broken: bool
+    sure: bool
     end: End
     peak: int
+    last: int
     step_V: float
     spike_A: float | None
+    clearings: tuple[Event, ...]
+    spikes: tuple[Event, ...]
     flashovers: tuple[float, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Rise:
-    """How the voltage rose.
-
-    Parameters
-    ----------
-    start_V : voltage from which the ramp rose
-    duration_s : from there to the greatest voltage
-    rate_V_per_s : least-squares slope between the two
-    slowest, fastest : of the slopes of its parts, relative to `rate_V_per_s`; both 1 where there
-        are too few samples to tell
-    """
-
-    start_V: float
-    duration_s: float
-    rate_V_per_s: float
-    slowest: float
-    fastest: float
+    noise_V: float
+    greatest_V: float
 
 
 def find_breakdown(
-    voltage_V: FloatArray, current_A: FloatArray | None, criteria: Criteria
+    voltage_V: FloatArray, current_A: FloatArray | None, interval_s: float, criteria: Criteria
 ) -> Breakdown:
-    """Find the first collapse of the voltage, or what else ended the ramp.
-
-    With a current channel a collapse is a breakdown only if the current spikes with it: an
-    amplifier that is switched off lets the voltage fall too.
+    """Find the first breakdown of the film, or what else ended the ramp.
 
     Parameters
     ----------
     voltage_V : positive, shape (n,)
     current_A : shape (n,), or None if it was not recorded
+    interval_s : between samples
     """
-    greatest = np.maximum.accumulate(voltage_V)
-    limit_V = (1.0 - criteria.limit_tolerance) * criteria.limit_V
-    flashovers: list[float] = []
-    at = 1 + int(np.argmax(greatest >= _FOOT * greatest[-1]))
-    while at < voltage_V.size:
-        lost = np.flatnonzero(voltage_V[at:] < (1.0 - criteria.dip) * greatest[at - 1 : -1])
-        if not lost.size:
-            break
-        at += int(lost[0])
-        before_V = float(greatest[at - 1])
-        if before_V >= limit_V:
-            break
-        floor = (1.0 - criteria.collapse) * before_V
-        early = voltage_V[at : at + criteria.collapse_steps]
-        if (early < floor).any():
-            spike = _spike(current_A, at, criteria)
-            if spike is None or spike[1]:
-                return _ended(voltage_V, at, "collapse", flashovers, spike and spike[0])
-            return _ended(voltage_V, at, "turned down", flashovers)
-        back = np.flatnonzero(voltage_V[at:] >= (1.0 - 0.5 * criteria.dip) * before_V)
-        if not back.size:
-            end: End = "turned down" if (voltage_V[at:] < floor).any() else "flashover"
-            return _ended(voltage_V, at, end, flashovers)
-        flashovers.append(before_V)
-        at += int(back[0]) + 1
-    end = "amplifier limit" if float(greatest[-1]) >= limit_V else "file ended"
-    return _ended(voltage_V, voltage_V.size, end, flashovers)
+    return _Search(voltage_V, current_A, interval_s, criteria).run()
 
 
-def _spike(current_A: FloatArray | None, at: int, criteria: Criteria) -> tuple[float, bool] | None:
-    """Give the greatest current around a collapse, and whether it stands out from before."""
-    if current_A is None:
-        return None
-    steps = criteria.collapse_steps
-    around = np.abs(current_A[max(at - 1, 0) : at + steps])
-    before = current_A[: max(at - 1, 1)]
-    usual = float(np.median(before))
-    noise = 1.4826 * float(np.median(np.abs(before - usual)))
-    least = max(criteria.spike_A, abs(usual) + criteria.spike_noise * noise)
-    greatest = float(around.max())
-    return greatest, greatest >= least
+class _Search:
+    """Walks along one ramp from event to event."""
+
+    def __init__(
+        self, v: FloatArray, current_A: FloatArray | None, interval_s: float, criteria: Criteria
+    ) -> None:
+        self.v, self.current_A, self.criteria = v, current_A, criteria
+        self.slow = interval_s > criteria.arc_s
+        self.greatest = np.maximum.accumulate(v)
+        self.noise_V = voltage_noise(v[: int(np.argmax(v)) + 1])
+        allowed = np.maximum(
+            criteria.dip * self.greatest[:-1],
+            max(_LOST_NOISE * self.noise_V, _LEAST_LOSS * float(self.greatest[-1])),
+        )
+        self.losses = 1 + np.flatnonzero(v[1:] < self.greatest[:-1] - allowed)
+        self.jumps = (
+            np.zeros(0, dtype=np.intp)
+            if current_A is None
+            else current_jumps(current_A, v, criteria.spike_A, criteria.spike_noise)
+        )
+        self.clearings: list[Event] = []
+        self.spikes: list[Event] = []
+        self.flashovers: list[float] = []
+
+    def run(self) -> Breakdown:
+        """Go from event to event until one ends the ramp."""
+        at, n = 1 + foot(self.v), self.v.size
+        limit_V = (1.0 - self.criteria.limit_tolerance) * self.criteria.limit_V
+        while at < n:
+            loss, jump = (_next(places, at, n) for places in (self.losses, self.jumps))
+            first = min(loss, jump)
+            if first == n or float(self.greatest[first - 1]) >= limit_V:
+                break
+            near = jump < n and jump <= loss + self.criteria.collapse_steps
+            ended, at = self._jumped(jump, loss) if near else self._lost(loss)
+            if ended is not None:
+                return self._first_of(ended)
+        reached = float(self.greatest[-1]) >= limit_V
+        return self._first_of(
+            self._ended("amplifier limit", n - 1) if reached else self._ended("file ended", n - 1)
+        )
+
+    def _jumped(self, jump: int, loss: int) -> tuple[Breakdown | None, int]:
+        """Judge a jump of the current, and where to look on."""
+        found = self._event(jump, min(loss, jump))
+        weak = found.current_A is not None and found.current_A < self.criteria.event_A
+        if weak and not found.lost:
+            self.spikes.append(found)
+            return None, jump + 1
+        return self._broke(found, min(loss, jump))
+
+    def _broke(self, found: Event, first: int) -> tuple[Breakdown | None, int]:
+        back = self._back(first, found.voltage_V)
+        if back is not None:
+            self.clearings.append(found)
+            return None, max(back + 1, first + 2)
+        floor = (1.0 - self.criteria.collapse) * found.voltage_V
+        rest = self.v[first:]
+        early = self.v[first : found.last + 1 + self.criteria.collapse_steps]
+        end: End = (
+            "collapse"
+            if (early < floor).any()
+            else "slow collapse" if (rest < floor).any()
+            else "held by the current limit"
+        )  # fmt: skip
+        return self._ended(end, found.last, spike_A=found.current_A), self.v.size
+
+    def _lost(self, loss: int) -> tuple[Breakdown | None, int]:
+        """Judge a loss of voltage with which no current jumps."""
+        steps, before_V = self.criteria.collapse_steps, float(self.greatest[loss - 1])
+        floor = (1.0 - self.criteria.collapse) * before_V
+        found = self._event(loss, loss)
+        if found.current_A is not None and found.current_A >= self._least_current(loss):
+            return self._broke(found, loss)
+        abrupt = bool((self.v[loss : loss + steps] < floor).any())
+        if abrupt:
+            if self.current_A is None:
+                return self._ended("collapse", loss - 1), self.v.size
+            end: End = "collapse without current" if self.slow else "turned down"
+            return self._ended(end, loss - 1, sure=not self.slow), self.v.size
+        back = self._back(loss, before_V)
+        if back is not None:
+            self.flashovers.append(before_V)
+            return None, back + 1
+        kept = self.current_A is None and not (self.v[loss:] < floor).any()
+        sure = self.current_A is not None
+        return (
+            self._ended(
+                "part lost without current" if kept else "turned down", loss - 1, sure=sure
+            ),
+            self.v.size,
+        )
+
+    def _event(self, at: int, first: int) -> Event:
+        """Describe what happens at a jump or loss: the voltage before it, and how much is lost."""
+        steps, before_V = self.criteria.collapse_steps, float(self.greatest[max(first - 1, 0)])
+        allowed = max(_DIP_NOISE * self.noise_V, _LEAST_DIP * before_V)
+        risen_V = before_V + _last_step(self.v[:first])
+        dipped = float(self.v[first]) < risen_V - allowed
+        later = float(self.v[first : first + 2].min())
+        lost = 1.0 - later / risen_V if later < risen_V - allowed else 0.0
+        last = first - 1 if dipped or self._noisy(before_V) else first
+        current = self.current_A
+        spike = (
+            None
+            if current is None
+            else float(np.abs(current[max(first - 1, 0) : at + steps]).max())
+        )
+        return Event(last, float(self.greatest[last]), spike, lost)
+
+    def _least_current(self, at: int) -> float:
+        """Least current around a loss of voltage that stands out from what was before."""
+        if self.current_A is None:
+            return np.inf
+        before = self.current_A[: max(at - 1, 1)]
+        usual = float(np.median(before))
+        noise = 1.4826 * float(np.median(np.abs(before - usual)))
+        return max(self.criteria.spike_A, abs(usual) + self.criteria.spike_noise * noise)
+
+    def _back(self, first: int, before_V: float) -> int | None:
+        """Sample at which the voltage has come back, if it has."""
+        loss = 0.5 * self.criteria.dip * before_V
+        after = self.v[first:]
+        if loss < _DIP_NOISE * self.noise_V:
+            after = steadied(after)
+        level = before_V - max(loss, 2.0 * self.noise_V)
+        out = np.flatnonzero(after < level)
+        start = int(out[0]) if out.size and out[0] <= self.criteria.collapse_steps else 0
+        back = np.flatnonzero(after[start:] >= level)
+        if not back.size or (back.size < 2 and start + int(back[0]) == after.size - 1):
+            return None
+        return first + start + int(back[0])
+
+    def _noisy(self, voltage_V: float) -> bool:
+        return self.noise_V > _PLAIN * voltage_V
+
+    def _ended(
+        self, how: End, last: int, *, sure: bool = True, spike_A: float | None = None
+    ) -> Breakdown:
+        peak = int(np.argmax(self.v[: last + 1]))
+        value, u_V = float(self.v[peak]), 0.0
+        if self._noisy(value):
+            # of a voltage that was turned down or held, the ramp ends at its greatest sample
+            value, u_V = level_at(self.v, last if how in BROKEN else peak, self.noise_V)
+        return Breakdown(
+            voltage_V=value,
+            u_V=u_V,
+            broken=how in BROKEN,
+            sure=sure,
+            end=how,
+            peak=peak,
+            last=last,
+            step_V=_last_step(self.v[: peak + 1]),
+            spike_A=spike_A,
+            clearings=tuple(self.clearings),
+            spikes=tuple(self.spikes),
+            flashovers=tuple(self.flashovers),
+            noise_V=self.noise_V,
+            greatest_V=float(self.greatest[-1]),
+        )
+
+    def _first_of(self, ended: Breakdown) -> Breakdown:
+        """Go back to the first breakdown of a film that cleared itself, if that is what counts."""
+        if not self.clearings or self.criteria.after_clearing == "final collapse":
+            return ended
+        first = self.clearings[0]
+        found = self._ended("self-clearing", first.last, spike_A=first.current_A)
+        return replace(found, clearings=ended.clearings, spikes=ended.spikes)
 
 
-def _ended(
-    voltage_V: FloatArray, end: int, how: End, flashovers: list[float], spike_A: float | None = None
-) -> Breakdown:
-    peak = int(np.argmax(voltage_V[:end]))
-    return Breakdown(
-        voltage_V=float(voltage_V[peak]),
-        broken=how == "collapse",
-        end=how,
-        peak=peak,
-        step_V=_last_step(voltage_V[: peak + 1]),
-        spike_A=spike_A,
-        flashovers=tuple(flashovers),
-    )
+def _next(places: NDArray[np.intp], at: int, none: int) -> int:
+    later = int(np.searchsorted(places, at))
+    return int(places[later]) if later < places.size else none
 
 
 def _last_step(rising_V: FloatArray) -> float:
     """Rise in one sampling step just before the end: the median of the last ones."""
     steps = np.diff(rising_V[-11:])
     return max(float(np.median(steps)), 0.0) if steps.size else 0.0
-
-
-def audit_rise(time_s: FloatArray, voltage_V: FloatArray, peak: int, dip: float) -> Rise:
-    """Measure how the voltage rose up to sample `peak`, the samples of flashovers left out.
-
-    Parameters
-    ----------
-    time_s, voltage_V : shape (n,) each
-    dip : part of the voltage whose loss is a flashover
-
-    Raises
-    ------
-    FitRefused : fewer than 5 samples of rising voltage
-    """
-    t, v = time_s[: peak + 1], voltage_V[: peak + 1]
-    first = _start(v)
-    held = v >= (1.0 - 0.5 * dip) * np.maximum.accumulate(v)
-    held[:first] = False
-    t, v = t[held], v[held]
-    if v.size < _FEWEST or not v[-1] > v[0]:
-        raise FitRefused(
-            f"{v.size} samples of a rising voltage; at least {_FEWEST} are needed to tell a ramp "
-            "from a switch: sample faster, or raise the voltage more slowly",
-            {"samples": v.size},
-        )
-    rate = _slope(t, v)
-    parts = min(_PARTS, v.size // _FEWEST_IN_PART)
-    edges = np.linspace(0, v.size, parts + 1).astype(int) if parts > 1 else np.array([0, v.size])
-    slopes = [_slope(t[a:b], v[a:b]) / rate for a, b in pairwise(edges)]
-    return Rise(float(v[0]), float(t[-1] - t[0]), rate, min(slopes), max(slopes))
-
-
-def _start(rising_V: FloatArray) -> int:
-    """First sample of the slow rise: after the last jump, else where there is voltage at all."""
-    steps = np.diff(rising_V)
-    top = float(rising_V[-1])
-    usual = float(np.median(steps)) if steps.size else 0.0
-    up = np.flatnonzero(steps > max(_JUMP * top, _JUMP_STEPS * usual))
-    low = np.flatnonzero(rising_V < _FOOT * top)
-    # a jump back up after a flashover is no start: only one from below everything before counts
-    greatest = np.maximum.accumulate(rising_V)
-    jumps = [int(i) + 1 for i in up if rising_V[i] >= 0.99 * greatest[i] - _FOOT * top]
-    return max(jumps[-1] if jumps else 0, int(low[-1]) + 1 if low.size else 0)
-
-
-def _slope(t: FloatArray, v: FloatArray) -> float:
-    centred = t - t.mean()
-    return float(centred @ v / (centred @ centred))

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from deamat.core.arrays import FloatArray
 from deamat.techniques.breakdown.ramp import End
+from deamat.techniques.breakdown.rise import Steps
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,6 +18,7 @@ class Ramp:
     time_s, voltage_V, current_A : shape (n,) each; no current where it was not recorded
     end : what ended it
     duration_s, rate_V_per_s : from its start to the greatest voltage
+    steps : of a step-by-step test, None for a ramp
     """
 
     time_s: FloatArray
@@ -25,6 +27,7 @@ class Ramp:
     end: End
     duration_s: float
     rate_V_per_s: float
+    steps: Steps | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +37,7 @@ class FilmTest:
     Parameters
     ----------
     censored : it did not break
+    sure : False where the log does not tell whether it broke
     thickness_m : None where the register gives the field itself
     ramp : None where the register gives voltage or field
     """
@@ -41,6 +45,7 @@ class FilmTest:
     censored: bool
     thickness_m: float | None
     ramp: Ramp | None
+    sure: bool = True
 
     @property
     def columns(self) -> dict[str, FloatArray]:

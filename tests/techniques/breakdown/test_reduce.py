@@ -52,10 +52,19 @@ def test_polarity_does_not_matter_and_thickness_divides() -> None:
     [
         ({"dt": 1.0}, {"fast-rise": "it broke after 99 s; a slow rise takes more than 120 s"}),
         (
-            {"spike": False},
+            {"spike": False, "dt": 0.1},
             {
                 "right-censored": "the voltage was turned down, no current spiked: it bore this "
                 "field unbroken"
+            },
+        ),
+        (
+            {"spike": False},
+            {
+                "end-unsure": "the voltage collapsed within a sampling step and no current spiked: "
+                "it broke and the log was too slow to show the current, or it was switched off: "
+                "counted as broken; declare `censored` (yes, no) in the register where the "
+                "laboratory knows"
             },
         ),
         (
@@ -80,6 +89,74 @@ def test_a_rate_that_is_not_the_one_set_is_flagged() -> None:
     assert str(flag) == (
         "rate-of-rise: 25 V/s on the whole, 1 to 1 times that in parts, and 50 V/s were set"
     )
+
+
+def test_the_register_decides_where_the_log_does_not_tell() -> None:
+    for said, censored in (("yes", 1), ("no", 0)):
+        row = film(notes={"censored": said}, thickness_m=MICROMETER)
+        (value,) = reduce(row, ramp_file(spike=False)).values
+        assert value.diagnostics["censored"] == censored
+        assert "end-unsure" not in [f.name for f in value.flags]
+
+
+def steps_file(step_V: float = 500.0, hold_s: float = 20.0, noise_V: float = 0.0) -> Recording:
+    """Held levels up to 6000 V, the last for half as long as the others, sampled at 2 s."""
+    levels = np.arange(step_V, 6000.0 + 1.0, step_V)
+    count = round(hold_s / 2.0)
+    volts = np.append(np.repeat(levels, count)[: -(count // 2)], [0.0, 0.0, 0.0])
+    volts = volts + noise_V * np.random.default_rng(4).standard_normal(volts.size)
+    amperes = np.full(volts.size, 2e-6)
+    amperes[-3] = 8e-3
+    return recording(time_s=2.0 * np.arange(float(volts.size)), voltage_V=volts, current_A=amperes)
+
+
+@pytest.mark.parametrize("step_V", [250.0, 500.0, 1000.0])
+@pytest.mark.parametrize("hold_s", [10.0, 20.0, 60.0])
+def test_a_step_by_step_test_is_read_by_its_own_rule(step_V: float, hold_s: float) -> None:
+    file = steps_file(step_V, hold_s)
+    (value,) = reduce(film(thickness_m=MICROMETER), file).values
+    assert value.diagnostics["voltage_V"] == 6000.0
+    assert value.diagnostics["step_V"] == step_V
+    assert value.diagnostics["hold_s"] == hold_s
+    assert value.method.startswith(
+        "voltage of the step at which it broke (ASTM D149, method B) in a DC test in steps of "
+        f"{step_V:g} V, each held {hold_s:g} s"
+    )
+    relative = {c.source: c.u / value.quantity.value for c in value.budget}
+    assert relative["broke within a step of the test: half of it"] == pytest.approx(step_V / 12e3)
+    assert value.flags == ()
+    (held,) = reduce(film(thickness_m=MICROMETER), file, step_rule="IEC 60243-1").values
+    assert held.diagnostics["voltage_V"] == 6000.0 - step_V
+    assert "IEC 60243-1" in held.method
+
+
+@pytest.mark.parametrize("noise_V", [10.0, 40.0])
+def test_noise_does_not_hide_the_steps(noise_V: float) -> None:
+    (value,) = reduce(film(thickness_m=MICROMETER), steps_file(noise_V=noise_V)).values
+    assert value.diagnostics["voltage_V"] == pytest.approx(6000.0, abs=1.5 * noise_V)
+    assert value.diagnostics["step_V"] == pytest.approx(500.0, abs=noise_V)
+
+
+def test_a_step_that_was_just_reached_counts_and_one_on_the_way_does_not() -> None:
+    file = steps_file()
+    volts = file.columns["voltage_V"]
+    for last, expected in ((6000.0, 6000.0), (5700.0, 5500.0)):
+        kept = np.append(volts[volts == 5500.0], last)
+        cut = np.concatenate([volts[volts < 5500.0][:-3], kept, np.zeros(3)])
+        amperes = np.where(np.arange(cut.size) == cut.size - 3, 8e-3, 2e-6)
+        tested = recording(
+            time_s=2.0 * np.arange(float(cut.size)), voltage_V=cut, current_A=amperes
+        )
+        (value,) = reduce(film(thickness_m=MICROMETER), tested).values
+        assert value.diagnostics["voltage_V"] == expected
+
+
+def test_a_ramp_sampled_too_slowly_says_so() -> None:
+    columns = {k: v[3::8] for k, v in ramp_file().columns.items()}
+    columns["voltage_V"][-1] = 0.0
+    columns["current_A"] = np.where(np.arange(13) == 12, 0.02, 0.0)
+    (value,) = reduce(film(thickness_m=MICROMETER), recording(**columns)).values
+    assert [f.name for f in value.flags] == ["coarse-sampling"]
 
 
 def test_without_a_current_channel_the_collapse_alone_counts() -> None:

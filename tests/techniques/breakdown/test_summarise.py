@@ -15,7 +15,6 @@ from deamat.core.quantity import Quantity
 from deamat.core.records import PropertyRecord
 from deamat.core.register import read_register
 from deamat.estimators.weibull.area import scale_to_area
-from deamat.estimators.weibull.intervals import Interval
 from deamat.techniques.breakdown import TECHNIQUE
 from deamat.techniques.breakdown.config import BreakdownConfig
 from deamat.techniques.breakdown.summarise import widened
@@ -215,8 +214,7 @@ def test_shared_errors_widen_fields_and_leave_the_shape_alone() -> None:
 
 
 def test_an_interval_without_shared_errors_is_left_as_it_is() -> None:
-    interval = Interval(2.0, 1.0, 3.0, 0.95, True, ())
-    assert widened(interval, 0.0) == pytest.approx((1.0, 3.0))
+    assert widened(2.0, (1.0, 3.0), 0.0) == pytest.approx((1.0, 3.0))
 
 
 def test_intervals_cover_with_large_shared_errors() -> None:
