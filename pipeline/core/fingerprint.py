@@ -141,7 +141,7 @@ class Sources:
         if module not in self._parsed:
             tree = ast.parse((self.root / path).read_bytes(), path)
             package = module if path.endswith("__init__.py") else module.rpartition(".")[0]
-            names = [name for node in ast.walk(tree) for name in self._named(node, package)]
+            names = [name for node in _running(tree) for name in self._named(node, package)]
             own = frozenset(name for name in names if self._file(name) is not None)
             foreign = {name.partition(".")[0] for name in names} - {self.name}
             self._parsed[module] = own, frozenset(foreign - sys.stdlib_module_names)
@@ -161,7 +161,7 @@ class Sources:
             yield from submodules
             if len(submodules) < len(below):
                 yield base
-        elif isinstance(node, ast.Call) and _called(node.func) in _BY_NAME:
+        elif isinstance(node, ast.Call) and _last_name(node.func) in _BY_NAME:
             named = node.args[0] if node.args else None
             if isinstance(named, ast.Constant) and isinstance(named.value, str):
                 yield named.value
@@ -177,11 +177,23 @@ class Sources:
                 yield ".".join([self.name, *filter(None, stem.split("/"))])
 
 
-def _called(function: ast.expr) -> str:
-    """Give the last name of a called function: `import_module` of `importlib.import_module`."""
-    if isinstance(function, ast.Attribute):
-        return function.attr
-    return function.id if isinstance(function, ast.Name) else ""
+def _running(node: ast.AST) -> Iterator[ast.AST]:
+    """Walk over all that may run: what stands under `if TYPE_CHECKING:` never does."""
+    waiting = [node]
+    while waiting:
+        node = waiting.pop()
+        yield node
+        if isinstance(node, ast.If) and _last_name(node.test) == "TYPE_CHECKING":
+            waiting += node.orelse
+        else:
+            waiting += ast.iter_child_nodes(node)
+
+
+def _last_name(of: ast.expr) -> str:
+    """Return `import_module` of `importlib.import_module`, and of `import_module`."""
+    if isinstance(of, ast.Attribute):
+        return of.attr
+    return of.id if isinstance(of, ast.Name) else ""
 
 
 @cache

@@ -18,7 +18,7 @@ _FILES = {
     "rooms/one.py": "from toy.base import np\nfrom ..deep.leaf import x\n",
     "rooms/two.py": "def f():\n    import toy.late\n    from xml import dom\n",
     "rooms/two.j2": "{{ page }}",
-    "late.py": "",
+    "late.py": "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import only_for_types\n",
     "deep/__init__.py": "import toy.late\n",
     "deep/leaf.py": "x = 1\n",
     "forms/__init__.py": "from importlib import import_module\nimport_module(f'{__name__}.a')\n",
@@ -60,6 +60,7 @@ _FORMS = {"forms/__init__.py", "forms/a.py", "forms/more/b.py"}
             {*_ROOMS, "rooms/one.py", "base.py", "units.toml", "deep/__init__.py", "deep/leaf.py"},
             {"numpy"},
         ),
+        ("late", {"__init__.py", "late.py", "units.toml"}, set()),  # types are no code
         ("rooms.two", {*_ROOMS, "rooms/two.py", "late.py", "units.toml"}, set()),
         (
             "asks",  # by a computed name: all of the folder; by a written one: that module
