@@ -49,7 +49,7 @@ def table_of(parts: Iterable[Part]) -> dict[Place, float]:
 
 
 def truth_of(record: PropertyRecord, table: Mapping[Place, float]) -> float:
-    """Give the true value of a record.
+    """Return the true value of a record.
 
     Raises
     ------
@@ -87,7 +87,7 @@ def _of_liquid(law: TrueViscosity, key: str, conditions: Mapping[str, Condition]
 
 
 def liquid_at(law: TrueViscosity, key: str, time_s: float, rate_per_s: float) -> float:
-    """Give viscosity, K, n or K n^n of a liquid at a time.
+    """Return viscosity, K, n or K n^n of a liquid at a time.
 
     Raises
     ------
@@ -109,7 +109,7 @@ def liquid_at(law: TrueViscosity, key: str, time_s: float, rate_per_s: float) ->
 
 
 def viscosity_at(law: TrueViscosity, time_s: float, rate_per_s: float) -> float:
-    """Give the viscosity at a time and a nominal shear rate `[Pa.s]`."""
+    """Return the viscosity at a time and a nominal shear rate `[Pa.s]`."""
     return float(law(np.array([time_s]), np.array([rate_per_s]))[0])
 
 

@@ -66,7 +66,7 @@ class Draw:
 def stack(
     passive: tuple[float, float], film: tuple[float, float], electrode: tuple[float, float]
 ) -> Stack:
-    """Give a strip from (thickness, modulus) of its three materials."""
+    """Return a strip from (thickness, modulus) of its three materials."""
 
     def layer(role: Role, made: tuple[float, float]) -> Layer:
         return Layer(role, *made, WIDTH_m, DENSITY_kg_m3, 2.6, POISSON_RATIO)
@@ -106,13 +106,13 @@ def draw(count: int, seed: int = 0) -> tuple[list[Draw], int]:
 
 
 def tip_error(answer: Answer, reference: Answer, length_m: float) -> float:
-    """Give the distance of two tips in lengths."""
+    """Return the distance of two tips in lengths."""
     apart = math.hypot(answer.tip_x_m - reference.tip_x_m, answer.tip_y_m - reference.tip_y_m)
     return apart / length_m
 
 
 def costs_us(draws: Sequence[Draw]) -> dict[str, float]:
-    """Give the processor time of every model for one design, undisturbed `[us]`."""
+    """Return the processor time of every model for one design, undisturbed `[us]`."""
     some = [d.actuator for d in draws[:TIMED]]
 
     # In batches: what one model leaves in the caches shall not be the price of the next
@@ -131,7 +131,7 @@ def costs_us(draws: Sequence[Draw]) -> dict[str, float]:
 
 
 def row(name: str, cost_us: float, apart: FloatArray, bent: FloatArray) -> Row:
-    """Give quantiles of the errors of tip (in lengths) and curvature (relative)."""
+    """Return quantiles of the errors of tip (in lengths) and curvature (relative)."""
     return {
         "model": name,
         "us_per_design": cost_us,
@@ -201,7 +201,7 @@ def by_turn(x: float) -> Actuator:
 
 
 def gravity_length_m(beam: Beam) -> float:
-    """Give the elasto-gravity length `(B / w)^(1/3)` `[m]`."""
+    """Return the elasto-gravity length `(B / w)^(1/3)` `[m]`."""
     return float(np.cbrt(beam.bending_stiffness_N_m2 / weight(beam, FIRST_LAYER_DOWN)))
 
 
@@ -230,7 +230,7 @@ SWEEPS: dict[str, tuple[str, Callable[[float], Actuator], FloatArray, Aim]] = {
 def sweep(
     make: Callable[[float], Actuator], points: FloatArray, aim: Aim
 ) -> dict[Rung, FloatArray]:
-    """Give the error along a sweep: of the tip in lengths, or of the curvature, relative."""
+    """Return the error along a sweep: of the tip in lengths, or of the curvature, relative."""
     found: dict[Rung, list[float]] = {rung: [] for rung in NEGLECTS}
     for x in points.tolist():
         actuator = make(x)
@@ -301,7 +301,7 @@ def _panel(axes: Axes, points: FloatArray, errors: dict[Rung, FloatArray]) -> No
 
 
 def first_beyond(points: FloatArray, error: FloatArray) -> float | str:
-    """Give where an error first passes one percent; empty if it never does."""
+    """Return where an error first passes one percent; empty if it never does."""
     over = np.flatnonzero(error > _GOOD)
     return float(points[over[0]]) if over.size else ""
 

@@ -136,7 +136,7 @@ def statistics(answers: FloatArray, truth: FloatArray) -> dict[str, float]:
 def measured_rows(
     contenders: Sequence[Contender[Sample]], samples: Sequence[Sample], truth: FloatArray
 ) -> list[Row]:
-    """Give one row for each contender; `truth` is of shape (samples, questions)."""
+    """Return one row for each contender; `truth` is of shape (samples, questions)."""
     found = run(contenders, samples, truth.shape[1])
     rows: list[Row] = []
     for c in contenders:

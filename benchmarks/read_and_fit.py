@@ -129,7 +129,7 @@ def ours_whole() -> Contender:
 
 
 def _specimen() -> Specimen:
-    """Give the register's row, which a run has read before it opens a file."""
+    """Return the register's row, which a run has read before it opens a file."""
     return Specimen(
         id="any",
         material="any",
@@ -220,7 +220,7 @@ CONTENDERS: Mapping[str, Callable[[], Contender]] = {
 
 
 def worst_error(contender: Contender, curves: Sequence[Curve]) -> float:
-    """Give the largest relative distance from the true modulus.
+    """Return the largest relative distance from the true modulus.
 
     Raises
     ------
@@ -258,7 +258,7 @@ def compare(curves: Sequence[Curve], names: Sequence[str], rounds: int) -> list[
 
 
 def peak_memory_MB(folder: Path) -> float:
-    """Give the peak memory of a process that reads and fits every file of a campaign `[MB]`."""
+    """Return the peak memory of a process that reads and fits every file of a campaign `[MB]`."""
     command = [sys.executable, "-m", "benchmarks.read_and_fit", "--peak-memory-of", str(folder)]
     return float(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
 

@@ -94,7 +94,7 @@ def wall_times_s(command: Sequence[str], times: int) -> list[float]:
 
 
 def own_peak_memory_MB() -> float:
-    """Give the largest resident size that this process has had `[MB]`.
+    """Return the largest resident size that this process has had `[MB]`.
 
     Linux hands the peak of a parent on to the child that it starts, so a process that is measured
     must be started before its parent has grown.

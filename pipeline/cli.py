@@ -40,7 +40,7 @@ def _home() -> Path:
 
 
 def _folders(command: F) -> F:
-    """Give a command the options --raw, --config and --processed."""
+    """Return a command the options --raw, --config and --processed."""
     for name, what in (
         ("processed", "results"),
         ("config", "configuration"),

@@ -38,12 +38,12 @@ def number(row: Row, column: str) -> float:
 
 
 def default_of(rows: Sequence[Row]) -> Row:
-    """Give the row of the default."""
+    """Return the row of the default."""
     return next(row for row in rows if row["kind"] == "default")
 
 
 def named(rows: Sequence[Row], name: str) -> Row:
-    """Give the row of one contender."""
+    """Return the row of one contender."""
     return next(row for row in rows if row["contender"] == name)
 
 

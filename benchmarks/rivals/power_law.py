@@ -64,7 +64,7 @@ def plain_values(
 
 
 def law(t: FloatArray, q: FloatArray, b: FloatArray, degrees: Degrees) -> FloatArray:
-    """Give K(t) q^m(t) for raw coefficients b of K, then of m, lowest order first."""
+    """Return K(t) q^m(t) for raw coefficients b of K, then of m, lowest order first."""
     split = degrees[0] + 1
     with np.errstate(all="ignore"):
         factor = np.polynomial.polynomial.polyval(t, b[:split])
@@ -73,7 +73,7 @@ def law(t: FloatArray, q: FloatArray, b: FloatArray, degrees: Degrees) -> FloatA
 
 
 def constant_start(y: FloatArray, degrees: Degrees) -> FloatArray:
-    """Give the coefficients of a law that is the mean of y everywhere."""
+    """Return the coefficients of a law that is the mean of y everywhere."""
     b = np.zeros(sum(degrees) + 2)
     b[0] = y.mean()
     return b

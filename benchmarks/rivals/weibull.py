@@ -39,7 +39,7 @@ class RivalIntervals:
 
 
 def wald_covariance(x: ArrayLike, censored: ArrayLike | None = None) -> FloatArray:
-    """Give the covariance of (ln scale, ln shape) from the observed information, shape (2, 2)."""
+    """Return the covariance of (ln scale, ln shape) from the observed information, shape (2, 2)."""
     values, _ = check_sample(x, censored)
     best = fit(x, censored)
     v = best.shape * np.log(values / best.scale)
@@ -61,7 +61,7 @@ def wald_intervals(
     level: float = 0.95,
     probabilities: Sequence[float] = (),
 ) -> RivalIntervals:
-    """Give normal intervals of ln shape, ln scale and ln x_p, as most packages do.
+    """Return normal intervals of ln shape, ln scale and ln x_p, as most packages do.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def likelihood_ratio_intervals(
     level: float = 0.95,
     probabilities: Sequence[float] = (),
 ) -> RivalIntervals:
-    """Give the values whose profile likelihood lies within chi-square(1)/2 of the maximum.
+    """Return the values whose profile likelihood lies within chi-square(1)/2 of the maximum.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ def bootstrap_intervals(
     draws: int = 2000,
     seed: int = _BOOTSTRAP_SEED,
 ) -> RivalIntervals:
-    """Give the central percentiles of refitted samples drawn from the fit (parametric bootstrap).
+    """Return the central percentiles of refitted samples drawn from the fit (parametric bootstrap).
 
     Parameters
     ----------

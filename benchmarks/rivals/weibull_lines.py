@@ -71,7 +71,7 @@ def iec_62539(x: ArrayLike, censored: ArrayLike | None = None) -> Line:
 
 
 def log_weibull_variances(n: int) -> FloatArray:
-    """Give the variances of ln x_(i), i = 1..n, for scale 1 and shape 1, shape (n,)."""
+    """Return the variances of ln x_(i), i = 1..n, for scale 1 and shape 1, shape (n,)."""
     w = np.linspace(-45.0, 6.0, 2041)
     hazard = np.exp(w)
     i = np.arange(1.0, n + 1.0)[:, None]
@@ -90,7 +90,7 @@ def log_weibull_variances(n: int) -> FloatArray:
 
 
 def _weighted_line(x: FloatArray, y: FloatArray, weight: FloatArray) -> tuple[float, float]:
-    """Give slope and intercept of y on x."""
+    """Return slope and intercept of y on x."""
     x_mean, y_mean = (float(np.average(a, weights=weight)) for a in (x, y))
     slope = float(weight @ ((x - x_mean) * (y - y_mean)) / (weight @ (x - x_mean) ** 2))
     return slope, y_mean - slope * x_mean

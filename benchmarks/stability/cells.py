@@ -111,7 +111,7 @@ class Cell:
         return max(SILENT_LIMIT, 0.05 + 3.1 * math.sqrt(0.05 * 0.95 / self.samples))
 
     def row(self) -> Mapping[str, str | float | int]:
-        """Give the cell as a row of a table, fractions in percent."""
+        """Return the cell as a row of a table, fractions in percent."""
         return {
             "estimator": self.estimator,
             "question": self.question,
@@ -203,6 +203,6 @@ def _simulate(
 
 
 def refused(questions: int) -> Told:
-    """Give the answer of an estimator that declines all questions."""
+    """Return the answer of an estimator that declines all questions."""
     nothing = np.full(questions, np.nan)
     return Told(nothing, nothing, (frozenset(),) * questions)

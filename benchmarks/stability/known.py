@@ -93,7 +93,7 @@ _KNOWN: dict[tuple[str, str], tuple[str, tuple[str, ...]]] = {
 
 
 def reason_for(cell: Cell) -> str | None:
-    """Give the reason why a cell may be silently wrong, or None if it may not."""
+    """Return the reason why a cell may be silently wrong, or None if it may not."""
     if (cell.estimator, cell.failure) not in _KNOWN:
         return None
     reason, settings = _KNOWN[cell.estimator, cell.failure]

@@ -50,7 +50,7 @@ class Campaign:
 
 
 def find_campaigns(raw: Path) -> tuple[list[Path], list[str]]:
-    """List the campaign folders of `raw/` and name everything else there, which is left alone."""
+    """List the campaign folders of `raw/` and name everything else there, which is ignored."""
     folders, others = [], []
     for entry in sorted(raw.iterdir()):
         if entry.name.startswith("."):
@@ -86,7 +86,7 @@ def load_campaign(folder: Path) -> Campaign:
         raise RawFileError(
             path,
             said,
-            mend="a campaign declares title, laboratory and licence as text, and whether its data "
+            hint="a campaign declares title, laboratory and licence as text, and whether its data "
             "are simulated: `synthetic = false` for measurements",
         ) from error
     return Campaign(folder.name, folder, info)

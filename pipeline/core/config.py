@@ -80,7 +80,7 @@ class Config:
     files: Mapping[str, str]
 
     def name_of(self, material: str) -> str:
-        """Give the name people read; the id itself where none is declared."""
+        """Return the name people read; the id itself where none is declared."""
         known = self.materials
         return known[material].name if material in known else material
 

@@ -1,4 +1,4 @@
-"""The errors of the pipeline: each says what is wrong, where, and what would mend it."""
+"""The errors of the pipeline: each says what is wrong, where, and what would put it right."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class RawFileError(PipelineError):
     reason : what is wrong
     line, column : where, counted from 1; `column` counts fields, not characters
     value : the text found there
-    mend : what would make the file acceptable
+    hint : what would make the file acceptable
     """
 
     def __init__(
@@ -28,15 +28,15 @@ class RawFileError(PipelineError):
         line: int | None = None,
         column: int | None = None,
         value: str | None = None,
-        mend: str = "",
+        hint: str = "",
     ) -> None:
-        super().__init__(path, reason, line, column, value, mend)
+        super().__init__(path, reason, line, column, value, hint)
         self.path = path
         self.reason = reason
         self.line = line
         self.column = column
         self.value = value
-        self.mend = mend
+        self.hint = hint
 
     @property
     def place(self) -> str:
@@ -50,8 +50,8 @@ class RawFileError(PipelineError):
 
     def __str__(self) -> str:
         found = "" if self.value is None else f" (found {self.value!r})"
-        mend = f"; {self.mend}" if self.mend else ""
-        return f"{self.place}: {self.reason}{found}{mend}"
+        hint = f"; {self.hint}" if self.hint else ""
+        return f"{self.place}: {self.reason}{found}{hint}"
 
 
 class ConfigError(PipelineError):

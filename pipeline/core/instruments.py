@@ -69,7 +69,7 @@ class LcrAccuracy(Declared):
         *,
         fast: bool,
     ) -> FloatArray:
-        """Give the relative limit of error, shape (n,).
+        """Return the relative limit of error, shape (n,).
 
         Parameters
         ----------
@@ -107,7 +107,7 @@ class Machine(Declared):
     u_torque_calibration: float = Field(
         default=0.01,
         ge=0,
-        description="viscometer, part of full scale, shared: a limit of 2 % as two sigma",
+        description="viscometer, fraction of full scale, shared: a limit of 2 % as two sigma",
     )
     spring_torque: float = Field(
         default=1.0,
@@ -116,7 +116,7 @@ class Machine(Declared):
         "as many times higher. Brookfield's torque constants are LV 0.09373, RV 1, HA 2, HB 8",
     )
     torque_noise: float = Field(
-        default=0.003, gt=0, description="viscometer, part of full scale, of a single reading"
+        default=0.003, gt=0, description="viscometer, fraction of full scale, of a single reading"
     )
     max_travel_m: float | None = Field(
         default=None, gt=0, description="reading at which the displacement ends, where it matters"

@@ -17,7 +17,7 @@ _NOT_FINITE: dict[Detail, float] = {"nan": math.nan, "inf": math.inf, "-inf": -m
 
 
 def unchanged(value: Any) -> Any:
-    """Give a value as it is."""
+    """Return a value as it is."""
     return value
 
 
@@ -77,7 +77,7 @@ def nullable(kind: Kind) -> Kind:
 
 
 def array(item: Kind, least: int = 0) -> Kind:
-    """Give the kind of a tuple of any length, at least `least`."""
+    """Return the kind of a tuple of any length, at least `least`."""
     counted = {"minItems": least} if least else {}
     return Kind(
         {"type": "array", "items": item.schema, **counted},
@@ -90,7 +90,7 @@ def array(item: Kind, least: int = 0) -> Kind:
 
 
 def choice(*words: str) -> Kind:
-    """Give the kind of a word out of a closed list."""
+    """Return the kind of a word out of a closed list."""
     return Kind({"enum": list(words)}, "TEXT")
 
 

@@ -49,7 +49,7 @@ class FileEntry:
         return self.reason if self.placed else f"{self.path}: {self.reason}"
 
     def rejected(self, *errors: RawFileError) -> FileEntry:
-        """Give the entry as rejected for these reasons, beside those that it is rejected for."""
+        """Return the entry as rejected for these reasons, beside those that it is rejected for."""
         reasons = [str(error) for error in errors]
         if self.status == "rejected":
             return replace(self, reason="\n".join([self.reason, *reasons]))

@@ -28,7 +28,7 @@ def parse_manifest(text: str, path: str) -> dict[str, str]:
 
     Raises
     ------
-    RawFileError : a line that is not `<64 hex digits>  <file>`, or a file that stands twice
+    RawFileError : a line that is not `<64 hex digits>  <file>`, or a file that is listed twice
     """
     hashes: dict[str, str] = {}
     for number, line in enumerate(text.splitlines(), start=1):
@@ -38,7 +38,7 @@ def parse_manifest(text: str, path: str) -> dict[str, str]:
         if not match:
             raise RawFileError(path, "not a line of sha256sum", number, value=line[:80])
         if match[2] in hashes:
-            raise RawFileError(path, "a file stands twice", number, value=match[2])
+            raise RawFileError(path, "a file is listed twice", number, value=match[2])
         hashes[match[2]] = match[1]
     return hashes
 

@@ -419,7 +419,7 @@ class Law:
         return float(f"{math.sqrt(self.rates[0] * self.rates[1]):.6g}")
 
     def ci95(self, x: float, rate_per_s: float | None = None) -> tuple[float, float]:
-        """Give the 95 % confidence interval of the law at x `[unit]`: Student's t."""
+        """Return the 95 % confidence interval of the law at x `[unit]`: Student's t."""
         from scipy.special import stdtrit  # reading a card must not cost it
 
         found = self(x, rate_per_s)

@@ -228,7 +228,7 @@ class _Rows:
         return RawFileError(self.path, reason, line, self.header.index(name) + 1, value, hint)
 
     def spelt_once(self, specimen: Specimen, seen: dict[str, int], spellings: Spellings) -> None:
-        """Refuse a row that stands twice, and a name that differs from another only in its case.
+        """Refuse a row that is listed twice, and a name that differs from another only in its case.
 
         Parameters
         ----------

@@ -121,7 +121,7 @@ class Field:
 
 
 def entry_of(cls: Any) -> Entry:
-    """Give what an object of a card is called."""
+    """Return what an object of a card is called."""
     found: Entry = cls.ENTRY
     return found
 
@@ -243,7 +243,7 @@ def _rows(cls: Any) -> Kind:
 
 
 def labels_of(cls: Any) -> dict[str, str]:
-    """Give the labels of a curve by name, each with the attribute that holds it."""
+    """Return the labels of a curve by name, each with the attribute that holds it."""
     hints = hints_of(cls, include_extras=True)
     return {
         mark.name: declared.name
@@ -303,7 +303,7 @@ def read(cls: type[T], document: Mapping[str, Any], **of_card: Any) -> T:
 
 
 def maker(cls: type[T], stored: Sequence[Field], **of_card: Any) -> Callable[[Iterable[Any]], T]:
-    """Give the function that makes an object of the values of its stored fields."""
+    """Return the function that makes an object of the values of its stored fields."""
     made_of: Any = cls
     given = {name: value for name, value in of_card.items() if name in _of_card(made_of)}
     names = [field.path[-1] for field in stored]

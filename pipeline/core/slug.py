@@ -112,7 +112,7 @@ class Spellings:
         self._first: dict[tuple[str, str], tuple[str, str]] = {}
 
     def other(self, kind: str, text: str, place: str) -> str | None:
-        """Give the earlier spelling of a name and where it stands; None if this is its spelling.
+        """Return the earlier spelling of a name and where it stands; None if this is its spelling.
 
         Parameters
         ----------

@@ -126,7 +126,7 @@ def known(unit: str) -> bool:
 
 
 def si_factor(unit: str) -> tuple[str, float, float]:
-    """Give the SI unit, factor and offset of a unit: `SI = factor * written + offset`.
+    """Return the SI unit, factor and offset of a unit: `SI = factor * written + offset`.
 
     Raises
     ------

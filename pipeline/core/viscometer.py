@@ -11,7 +11,7 @@ _FULL_SCALE_AT_60_RPM_PAS = {1: 0.1, 2: 0.5, 3: 2.0, 4: 10.0}
 
 
 def full_scale_Pas(rotor: int, speed_rpm: float, spring_torque: float = 1.0) -> float:
-    r"""Give the viscosity at full torque, $\eta_{100} = s\, \eta_{100}(60) \cdot 60 / N$ `[Pa.s]`.
+    r"""Viscosity at full torque, $\eta_{100} = s\, \eta_{100}(60) \cdot 60 / N$ `[Pa.s]`.
 
     A reading obeys $\eta = \eta_{100} T / 100 \%$ with the torque T in percent.
 

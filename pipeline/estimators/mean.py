@@ -36,7 +36,7 @@ class Mean:
 
 
 def coverage_factor(degrees_of_freedom: float) -> float:
-    """Give the half width of a 95 % interval in standard uncertainties: Student's t quantile.
+    """Return the half width of a 95 % interval in standard uncertainties: Student's t quantile.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The slow reader of numbers: cell by cell, with a reason, a place and a mend for what it refuses.
+"""The slow reader of numbers: cell by cell, with a reason, a place and a hint for what it refuses.
 
 `numbers` hands a block over whenever its fast path is not certain. What is read here is read by
 the grammar below and by Python's correctly rounded `float`; nothing is ever turned into NaN.
@@ -48,10 +48,10 @@ _FIELD = re.compile(r'("[^"]*"|[^",]*),')
 _RANGE = "repeat the test within the instrument's range, or exclude the file"
 _NOT_A_NUMBER = ("not a number", "export the file again, or correct the export settings")
 
-# reason and mend by what the whole cell looks like; the first that fits is given
+# reason and hint by what the whole cell looks like; the first that fits is given
 _REASONS = tuple(
-    (re.compile(pattern, re.IGNORECASE), reason, mend)
-    for pattern, reason, mend in (
+    (re.compile(pattern, re.IGNORECASE), reason, hint)
+    for pattern, reason, hint in (
         ("", "a blank cell", "export the file again with every reading in every row"),
         (
             r"OVER.*|OUT.*|OVLD|OFL|[O0]\.?L|E{2,}|[+-]?(?:-{2,}|-[.,]-)|[*]+|[#]+",
@@ -99,7 +99,7 @@ def read_cells(
 
     Raises
     ------
-    RawFileError : naming line, column, value, reason and mend of the first cell that is no number
+    RawFileError : naming line, column, value, reason and hint of the first cell that is no number
     """
     lines = list(enumerate(text.split("\n"), start=first_line))
     if dialect.segmented:
@@ -119,7 +119,7 @@ def read_cells(
             line=lines[-1][0],
             column=columns,
             value=fields[-1],
-            mend="export the file again; if this exporter never writes a final line end, "
+            hint="export the file again; if this exporter never writes a final line end, "
             "set `ends_open = true` in campaign.toml",
         )
     return table
@@ -140,7 +140,7 @@ def _split(
             file.path,
             "a blank line between the rows",
             line=at,
-            mend="export the file again; one file holds one run",
+            hint="export the file again; one file holds one run",
         )
     fields = line.split(dialect.delimiter)
     if dialect.quoted and '"' in line:
@@ -160,7 +160,7 @@ def _split(
             line=at,
             column=stray[0],
             value=fields[stray[0] - 1],
-            mend="export the numbers without quotes",
+            hint="export the numbers without quotes",
         )
     if len(fields) < columns:
         raise RawFileError(
@@ -170,7 +170,7 @@ def _split(
             line=at,
             column=len(fields),
             value=fields[-1],
-            mend="export the file again",
+            hint="export the file again",
         )
     raise RawFileError(
         file.path,
@@ -178,7 +178,7 @@ def _split(
         line=at,
         column=columns + 1,
         value=fields[columns],
-        mend="export the file again"
+        hint="export the file again"
         + (
             ", without thousands separators and with decimal points"
             if dialect.delimiter == ","
@@ -210,14 +210,14 @@ def _refusal(
     found = _why(fields[column], dialect)
     if found is None and not any(looks_numeric(field) for field in fields):
         return _text_row(file, line, at)
-    reason, mend = found or _NOT_A_NUMBER
+    reason, hint = found or _NOT_A_NUMBER
     return RawFileError(
-        file.path, reason, line=at, column=column + 1, value=fields[column], mend=mend
+        file.path, reason, line=at, column=column + 1, value=fields[column], hint=hint
     )
 
 
 def _why(field: str, dialect: Dialect) -> tuple[str, str] | None:
-    """Give reason and mend for a field that `_value` does not read, None if it is no number."""
+    """Return reason and hint for a field that `_value` does not read, None if it is no number."""
     plain = field.strip('"') if dialect.quoted else field
     if dialect.decimal == "," and "." in plain and is_number(plain):
         return "a decimal point in a file with decimal commas", "export with one decimal mark"
@@ -238,9 +238,9 @@ def _why(field: str, dialect: Dialect) -> tuple[str, str] | None:
             "a thousands separator, which this format does not use",
             "export without thousands separators",
         )
-    for pattern, reason, mend in _REASONS:
+    for pattern, reason, hint in _REASONS:
         if pattern.fullmatch(plain):
-            return reason, mend
+            return reason, hint
     return None
 
 
@@ -251,5 +251,5 @@ def _text_row(file: RawFile, line: str, at: int) -> RawFileError:
         "the header is repeated between the rows" if header else "a text row between the rows",
         line=at,
         value=line.strip(),
-        mend="one file holds one run: export each run to a file of its own",
+        hint="one file holds one run: export each run to a file of its own",
     )

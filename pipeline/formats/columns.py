@@ -97,7 +97,7 @@ def _refuse_twins(layout: Layout, names: tuple[str, ...]) -> None:
             line=layout.names + 1,
             column=twin + 1,
             value=layout.labels[twin],
-            mend="export each quantity once",
+            hint="export each quantity once",
         )
 
 
@@ -113,7 +113,7 @@ def _unit(layout: Layout, reader: Reader, column: int, written: str) -> str:
         line=layout.units_line + 1,
         column=column + 1,
         value=label,
-        mend="export the column with its unit, or leave it out",
+        hint="export the column with its unit, or leave it out",
     )
 
 
@@ -127,7 +127,7 @@ def _conversion(layout: Layout, column: int, unit: str) -> tuple[str, float, flo
             line=layout.units_line + 1,
             column=column + 1,
             value=unit,
-            mend="export the column in a known unit, or leave it out",
+            hint="export the column in a known unit, or leave it out",
         ) from error
 
 

@@ -17,7 +17,7 @@ _DELIMITERS = {"tab": "\t", "semicolon": ";", "comma": ","}
 
 
 def detect(file: RawFile) -> Format:
-    """Give the one format that recognises the head of a file.
+    """Return the one format that recognises the head of a file.
 
     Raises
     ------
@@ -28,7 +28,7 @@ def detect(file: RawFile) -> Format:
         return matching[0]
     known = ", ".join(form.name for form in FORMATS)
     if not file.body.strip():
-        raise RawFileError(file.path, "the file is empty", mend="export the file again")
+        raise RawFileError(file.path, "the file is empty", hint="export the file again")
     if matching:
         reason = f"several formats recognise this file: {', '.join(f.name for f in matching)}"
     else:
@@ -38,7 +38,7 @@ def detect(file: RawFile) -> Format:
         f"{reason} ({_found(file)})",
         line=1,
         value=file.head[0][:60],
-        mend="name the format in the register's `format` column, or export in one of these forms",
+        hint="name the format in the register's `format` column, or export in one of these forms",
     )
 
 
@@ -48,7 +48,7 @@ def _recognising(head: Head) -> tuple[Format, ...]:
 
 
 def by_name(name: str) -> Format:
-    """Give the format that a register names.
+    """Return the format that a register names.
 
     Raises
     ------

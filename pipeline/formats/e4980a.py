@@ -92,7 +92,7 @@ def _read(file: RawFile) -> Recording:
     if at is None:
         raise RawFileError(
             file.path, "no row of labels as the e4980a form has it", value=file.head[0],
-            mend="leave the register's `format` empty to have the form detected",
+            hint="leave the register's `format` empty to have the form detected",
         )  # fmt: skip
     said = _settings(file.head[:at])
     mode = mode_of(

@@ -115,7 +115,7 @@ def _monitors(file: RawFile, layout: Layout) -> dict[str, _Monitor]:
         if label in said:
             raise RawFileError(
                 file.path, f"channel {found[1]} is declared in line {said[label][0]} already",
-                line=at, value=line, mend="declare each channel once",
+                line=at, value=line, hint="declare each channel once",
             )  # fmt: skip
         said[label] = at, found[2]
     monitors = {}
@@ -127,7 +127,7 @@ def _monitors(file: RawFile, layout: Layout) -> dict[str, _Monitor]:
         if key not in said:
             raise RawFileError(
                 file.path, "a channel of which the file does not say what it measures",
-                line=layout.names + 1, column=column, value=label, mend=_MEND,
+                line=layout.names + 1, column=column, value=label, hint=_MEND,
             )  # fmt: skip
         monitors[label] = _monitor(file, *said[key])
     return monitors
@@ -139,14 +139,14 @@ def _monitor(file: RawFile, line: int, text: str) -> _Monitor:
     if found is None or not is_number(found[2]) or float(found[2]) == 0.0:
         raise RawFileError(
             file.path, "not the declaration of a voltage or current monitor", line=line,
-            value=text, mend=_MEND,
+            value=text, hint=_MEND,
         )  # fmt: skip
     quantity = found[1].casefold()
     si_unit, factor, _ = si_factor(found[3]) if known(found[3]) else ("", 1.0, 0.0)
     if si_unit != _SI[quantity]:
         raise RawFileError(
             file.path, f"a {quantity} monitor in {found[3]} per volt", line=line, value=text,
-            mend=f"declare it in {_SI[quantity]}/V",
+            hint=f"declare it in {_SI[quantity]}/V",
         )  # fmt: skip
     return _Monitor(f"{quantity}_{si_unit}", factor * float(found[2]))
 
@@ -165,24 +165,24 @@ def _named(
                 raise RawFileError(
                     file.path, "a channel that is not in volts", line=layout.names + 1,
                     column=column, value=f"{label} [{layout.units[column - 1]}]",
-                    mend="log the monitor outputs in V",
+                    hint="log the monitor outputs in V",
                 )  # fmt: skip
             name, values = monitors[label].name, monitors[label].factor * values
         elif label in wanted and name != wanted[label]:
             raise RawFileError(
                 file.path, f"a {label} in {layout.units[column - 1]}", line=layout.names + 1,
-                column=column, value=label, mend=f"name the column {wanted[label]}",
+                column=column, value=label, hint=f"name the column {wanted[label]}",
             )  # fmt: skip
         if name in columns:
             raise RawFileError(
                 file.path, f"two columns hold the {name.partition('_')[0]}",
                 line=layout.names + 1, column=column, value=label,
-                mend="log each quantity once",
+                hint="log each quantity once",
             )  # fmt: skip
         columns[name] = values
     if "voltage_V" not in columns:
         raise RawFileError(
-            file.path, "no channel is a voltage monitor", line=layout.names + 1, mend=_MEND
+            file.path, "no channel is a voltage monitor", line=layout.names + 1, hint=_MEND
         )
     return columns
 

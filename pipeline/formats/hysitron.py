@@ -77,7 +77,7 @@ def _read(file: RawFile) -> Recording:
             file.path,
             f"no line `{_POINTS} = ` above the labels, so a cut file would not show",
             line=layout.names + 1,
-            mend="export the file again",
+            hint="export the file again",
         )
     at, points = stated
     if not (points.isascii() and points.isdigit()):
@@ -86,7 +86,7 @@ def _read(file: RawFile) -> Recording:
             f"{_POINTS} is not a count",
             line=at + 1,
             value=points,
-            mend="export the file again",
+            hint="export the file again",
         )
     metadata = {
         {0: "timestamp", at: _POINTS}.get(i, f"line {i + 1}"): points if i == at else line.strip()
@@ -101,7 +101,7 @@ def _read(file: RawFile) -> Recording:
             f"{rows} rows where line {at + 1} states {points} points"
             + ("; the file seems cut" if rows < int(points) else ""),
             line=recording.source.last_line,
-            mend="export the file again",
+            hint="export the file again",
         )
     return recording
 

@@ -120,7 +120,7 @@ def _mode(file: RawFile, at: int, stems: Sequence[str]) -> str:
     if len(stems) != 3:
         raise RawFileError(
             file.path, f"{len(stems)} columns of numbers", line=at + 1, value=", ".join(stems),
-            mend="a sweep is frequency and one pair, such as frequency_Hz,Cp_F,D",
+            hint="a sweep is frequency and one pair, such as frequency_Hz,Cp_F,D",
         )  # fmt: skip
     found = tuple(map(_meaning, stems[1:]))
     if "C" in found:
@@ -130,13 +130,13 @@ def _mode(file: RawFile, at: int, stems: Sequence[str]) -> str:
             line=at + 1,
             column=2 + found.index("C"),
             value=stems[1 + found.index("C")],
-            mend="name the column Cp_F or Cs_F, as the meter was set",
+            hint="name the column Cp_F or Cs_F, as the meter was set",
         )
     if found not in _MODES:
         pairs = "; ".join(",".join(pair) for pair in _MODES)
         raise RawFileError(
             file.path, "not a pair that gives a permittivity", line=at + 1, column=2,
-            value=",".join(found), mend=f"known pairs: {pairs}",
+            value=",".join(found), hint=f"known pairs: {pairs}",
         )  # fmt: skip
     return _MODES[found]
 
@@ -153,7 +153,7 @@ def _with_row(
         if unit is not None and si_factor(unit) != si_factor(below):
             raise RawFileError(
                 file.path, f"the label says {unit}, the row of units below says otherwise",
-                line=at + 1, column=column, value=below, mend="say each unit once",
+                line=at + 1, column=column, value=below, hint="say each unit once",
             )  # fmt: skip
         result.append((stem, unit or below))
     return result
@@ -174,7 +174,7 @@ def _columns(
             found = "without a unit" if used is None else f"in {used}"
             raise RawFileError(
                 file.path, f"a column {found}, where a unit of {si} belongs", line=at + 1,
-                column=column, value=stem, mend=f"name the column {stem}_{si}",
+                column=column, value=stem, hint=f"name the column {stem}_{si}",
             )  # fmt: skip
         columns.append(Column(name, stem, used))
     return tuple(columns)

@@ -74,7 +74,7 @@ def function_columns(mode: str) -> tuple[Column, ...]:
 
 
 def mode_of(
-    file: RawFile, said: Sequence[tuple[int, str]], modes: Mapping[str, str], mend: str
+    file: RawFile, said: Sequence[tuple[int, str]], modes: Mapping[str, str], hint: str
 ) -> str:
     """Tell which pair a log holds from what its header says of it.
 
@@ -93,7 +93,7 @@ def mode_of(
             "the file does not say which function the meter measured, so its first number may be "
             "a capacitance in parallel or in series, or no capacitance at all",
             line=1,
-            mend=mend,
+            hint=hint,
         )
     for line, text in said:
         if text.casefold() not in modes:
@@ -102,7 +102,7 @@ def mode_of(
                 "a function that gives no permittivity",
                 line=line,
                 value=text,
-                mend=f"measure one of {', '.join(dict.fromkeys(modes.values()))}",
+                hint=f"measure one of {', '.join(dict.fromkeys(modes.values()))}",
             )
         if modes[text.casefold()] != modes[said[0][1].casefold()]:
             raise RawFileError(
@@ -110,7 +110,7 @@ def mode_of(
                 f"the function changes from {said[0][1]} (line {said[0][0]})",
                 line=line,
                 value=text,
-                mend="log one sweep with one function to one file",
+                hint="log one sweep with one function to one file",
             )
     return modes[said[0][1].casefold()]
 
@@ -126,7 +126,7 @@ def level_of(file: RawFile, line: int, text: str) -> str:
     if found is None or not float(found[1]) > 0.0:
         raise RawFileError(
             file.path, "not a test level in V or mV", line=line, value=text,
-            mend="log the reply of LEV:VOLT? as it is",
+            hint="log the reply of LEV:VOLT? as it is",
         )  # fmt: skip
     return repr(si_factor(found[2] or "V")[1] * float(found[1]))
 
@@ -176,14 +176,14 @@ def read_sweep(file: RawFile, sweep: Sweep, metadata: Mapping[str, str], reader:
 
 
 def _block(file: RawFile, first: int) -> tuple[str, bool]:
-    """Give the rows as text without trailing blank lines, and whether the last one is ended."""
+    """Return the rows as text without trailing blank lines, and whether the last one is ended."""
     block = file.body[file.offset(first) :].replace(b"\r\n", b"\n")
     ended = file.ends_open or block.endswith(b"\n")
     block = block.rstrip(b" \n")
     if not block:
         raise RawFileError(
             file.path, "no data rows: the file ends with its header",
-            line=file.body.rstrip().count(b"\n") + 1, mend="log the sweep again",
+            line=file.body.rstrip().count(b"\n") + 1, hint="log the sweep again",
         )  # fmt: skip
     return block.decode(), ended
 
@@ -198,7 +198,7 @@ def _split_status(file: RawFile, lines: Sequence[str], sweep: Sweep) -> tuple[li
         if line.lstrip().startswith("#"):
             raise RawFileError(
                 file.path, "a header line between the rows", line=at, value=line.strip()[:60],
-                mend="log one sweep to one file",
+                hint="log one sweep to one file",
             )  # fmt: skip
         if len(cells) != wanted:
             raise RawFileError(
@@ -208,13 +208,13 @@ def _split_status(file: RawFile, lines: Sequence[str], sweep: Sweep) -> tuple[li
                 line=at,
                 column=min(len(cells), wanted),
                 value=line.strip()[:60],
-                mend="log the sweep again",
+                hint="log the sweep again",
             )
         mark = cells[-1].strip()
         if mark.casefold() not in statuses:
             raise RawFileError(
                 file.path, "an unknown status", line=at, column=wanted, value=mark,
-                mend=f"known: {', '.join(statuses)}",
+                hint=f"known: {', '.join(statuses)}",
             )  # fmt: skip
         numbers.append(sweep.dialect.delimiter.join(cells[:-1]))
         marks.append(mark)
@@ -222,7 +222,7 @@ def _split_status(file: RawFile, lines: Sequence[str], sweep: Sweep) -> tuple[li
 
 
 def _sentinel(cell: str, dialect: Dialect) -> float | None:
-    """Give the number that stands for over-range (9.9E37), or None for any other cell."""
+    """Return the number that stands for over-range (9.9E37), or None for any other cell."""
     plain = cell.strip(" \t")
     if dialect.decimal == ",":
         plain = plain.replace(",", ".", 1)
@@ -268,7 +268,7 @@ def _positive(file: RawFile, frequency_Hz: FloatArray, first_line: int) -> None:
         at = int(wrong[0])
         raise RawFileError(
             file.path, "a frequency must be above zero", line=first_line + at, column=1,
-            value=f"{frequency_Hz[at]:g}", mend="log the sweep again",
+            value=f"{frequency_Hz[at]:g}", hint="log the sweep again",
         )  # fmt: skip
 
 

@@ -63,7 +63,7 @@ def _read(file: RawFile) -> Recording:
         raise RawFileError(
             file.path, "no line end after the last reading, so its last number may be cut",
             len(lines), value=lines[-1],
-            mend="log the run again, or end the line if it is whole",
+            hint="log the run again, or end the line if it is whole",
         )  # fmt: skip
     remarks: dict[str, str] = {}
     readings = []
@@ -83,13 +83,13 @@ def _reading(file: RawFile, at: int, line: str) -> Reading:
     if not tab or setting is None:
         raise RawFileError(
             file.path, "not a line of an NDJ-8S: stamp, TAB, rotor#rpm RPM, viscosity, torque, "
-            "temperature", at, value=line.strip(), mend="log the run again, or make it a # remark",
+            "temperature", at, value=line.strip(), hint="log the run again, or make it a # remark",
         )  # fmt: skip
     fields = rest.strip()[setting.end() :].split()
     if not 1 <= len(fields) <= 3:
         raise RawFileError(
             file.path, f"{len(fields)} fields behind the setting where a reading has viscosity, "
-            "torque and temperature", at, value=line.strip(), mend="log the run again",
+            "torque and temperature", at, value=line.strip(), hint="log the run again",
         )  # fmt: skip
     numbers = {"rotor": float(setting[1]), "speed_rpm": float(setting[2])}
     for pattern, why in ((OVER_RANGE, "over-range"), (BELOW_ZERO, "below-zero")):
@@ -98,7 +98,7 @@ def _reading(file: RawFile, at: int, line: str) -> Reading:
     if len(fields) < 2:
         raise RawFileError(
             file.path, "a reading without its torque; the line seems cut", at, value=line.strip(),
-            mend="log the run again",
+            hint="log the run again",
         )  # fmt: skip
     numbers["viscosity_Pas"] = to_si(number(file, at, 3, fields[0], "viscosity"), "mPa.s")
     numbers["torque"] = to_si(number(file, at, 4, fields[1], "torque"), "percent")

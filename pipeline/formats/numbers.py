@@ -63,13 +63,13 @@ def read_block(file: RawFile, first: int, columns: int, dialect: Dialect) -> Flo
             file.path,
             "no data rows: the file ends with its header",
             line=first,
-            mend="export the file again",
+            hint="export the file again",
         )
     return read_cells(file, text, first + 1, columns, dialect, ended=ended)
 
 
 def row_lines(file: RawFile, first: int, rows: int, dialect: Dialect) -> Sequence[int]:
-    """Give the line of every row that `read_block` read, counted from 1."""
+    """Return the line of every row that `read_block` read, counted from 1."""
     if not dialect.segmented:
         return range(first + 1, first + 1 + rows)
     lines = file.body[file.offset(first) :].split(b"\n")

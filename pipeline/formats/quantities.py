@@ -108,7 +108,7 @@ _REMARK = re.compile(r"\s*\([^()]*\)$")
 
 @lru_cache(maxsize=256)  # the files of a campaign have the same labels
 def meaning(label: str) -> tuple[int, str] | None:
-    """Give rank and standard name of a label, or None for a label outside the table."""
+    """Return rank and standard name of a label, or None for a label outside the table."""
     plain = label.casefold()
     return _MEANING.get(plain) or _MEANING.get(_REMARK.sub("", plain))
 

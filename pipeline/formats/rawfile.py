@@ -74,7 +74,7 @@ def _count_rows(lines: list[str]) -> int:
 
 
 def whole_file(path: Path) -> bytes:
-    """Give the bytes of a file, without the buffer that only helps who reads it in pieces."""
+    """Return the bytes of a file, without the buffer that only helps who reads it in pieces."""
     with path.open("rb", buffering=0) as file:
         return file.read()
 
@@ -113,7 +113,7 @@ class RawFile:
                 raise RawFileError(
                     self.path,
                     f"starts as UTF-16 but breaks at byte {error.start}",
-                    mend="export it again",
+                    hint="export it again",
                 ) from error
         elif data.startswith(codecs.BOM_UTF8):
             body, encoding = data[3:], "utf-8-sig"
@@ -135,7 +135,7 @@ class RawFile:
                 "a NUL byte in a text file",
                 line=body.count(b"\n", 0, nul) + 1,
                 value="\0",
-                mend="export the file again (UTF-16 text must start with its byte order mark)",
+                hint="export the file again (UTF-16 text must start with its byte order mark)",
             )
 
     @property
@@ -191,7 +191,7 @@ class RawFile:
         return Head([line.rstrip("\r") for line in text[:lines]], size if whole else 0)
 
     def decimal_mark(self, line: int) -> str:
-        """Give the decimal mark of rows not separated by commas: point, unless a comma is first.
+        """Return the decimal mark of rows not separated by commas: point, unless a comma is first.
 
         Parameters
         ----------
@@ -202,7 +202,7 @@ class RawFile:
         return "," if comma >= 0 and not 0 <= point < comma else "."
 
     def offset(self, line: int) -> int:
-        """Give the byte of `body` at which a line starts (counted from 0), at most its length."""
+        """Return the byte of `body` at which a line starts (counted from 0), at most its length."""
         at = 0
         for _ in range(line):
             at = self.body.find(b"\n", at) + 1

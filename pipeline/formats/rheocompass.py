@@ -66,7 +66,7 @@ def _read(file: RawFile) -> Recording:
         raise RawFileError(
             file.path, "no interval with labels and units as RheoCompass writes them", 1,
             value=file.head[0],
-            mend="leave the register's `format` empty to have the form detected",
+            hint="leave the register's `format` empty to have the form detected",
         )  # fmt: skip
     text = file.body.decode().replace("\r\n", "\n")
     rows = [row.split("\t") for row in text.rstrip("\n").split("\n")[layout.rows :]]
@@ -108,13 +108,13 @@ def _check(file: RawFile, layout: Layout, rows: list[list[str]]) -> None:
         if len(row) != len(layout.labels) + 1 or row[0]:
             raise RawFileError(
                 file.path, f"{len(row) - 1} fields where the header names {len(layout.labels)}", at,
-                value="\t".join(row)[:60], mend="export one interval, whole, to a file of its own",
+                value="\t".join(row)[:60], hint="export one interval, whole, to a file of its own",
             )  # fmt: skip
     stated = next((m for line in file.head if (m := _POINTS.match(line))), None)
     if stated is not None and int(stated[1]) != len(rows):
         raise RawFileError(
             file.path, f"{len(rows)} rows where the header states {stated[1]} points",
-            layout.rows + len(rows), mend="export the file again",
+            layout.rows + len(rows), hint="export the file again",
         )  # fmt: skip
 
 

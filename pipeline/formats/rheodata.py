@@ -47,7 +47,7 @@ def _read(file: RawFile) -> Recording:
     if not _recognises(file.head):
         raise RawFileError(
             file.path, f"no row of labels {_LABELS!r}", 1, value=file.head[0],
-            mend="leave the register's `format` empty to have the form detected",
+            hint="leave the register's `format` empty to have the form detected",
         )  # fmt: skip
     text = file.body.decode().replace("\r\n", "\n")
     rows = text.rstrip("\n").split("\n")[1:]

@@ -56,14 +56,14 @@ def _read(file: RawFile) -> Recording:
     if at is None or at + 1 >= len(file.head):
         raise RawFileError(
             file.path, "no `%ID` and `%Shear rate` lines", 1, value=file.head[0],
-            mend="leave the register's `format` empty to have the form detected",
+            hint="leave the register's `format` empty to have the form detected",
         )  # fmt: skip
     names = [cell.strip() for cell in file.head[0].split("\t")[1:] if cell.strip()]
     labels = file.head[at].lstrip("%").rstrip("\t").split("\t")
     if labels[1:] != ["Shear stress", "Viscosity"] * len(names) or len(set(names)) < len(names):
         raise RawFileError(
             file.path, f"{len(names)} different samples need as many pairs of columns", at + 1,
-            value=file.head[at], mend="name every pair of columns once in the `%ID` line",
+            value=file.head[at], hint="name every pair of columns once in the `%ID` line",
         )  # fmt: skip
     factors = _factors(file, at + 1, len(labels))
     table = read_block(file, at + 2, len(labels), Dialect("\t")) * factors

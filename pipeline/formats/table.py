@@ -34,13 +34,13 @@ class _Heading:
 
 
 def required(layout: Layout | None, head: Head, name: str, path: str = "") -> Layout:
-    """Give the layout, or refuse a file that a register sends to the wrong reader."""
+    """Return the layout, or refuse a file that a register sends to the wrong reader."""
     if layout is None:
         raise RawFileError(
             path,
             f"no row of labels and units as the {name} form has it",
             value=head[0],
-            mend="leave the register's `format` empty to have the form detected",
+            hint="leave the register's `format` empty to have the form detected",
         )
     return layout
 
@@ -151,7 +151,7 @@ def _refuse_rows_above(head: Head, layout: Layout, delimiter: str) -> None:
                 "a row of numbers above the labels",
                 line=at + 1,
                 value=line,
-                mend="one file holds one run: export each run to a file of its own",
+                hint="one file holds one run: export each run to a file of its own",
             )
 
 
@@ -171,7 +171,7 @@ def row_flags(rows: FloatArray, names: tuple[str, ...], lines: Sequence[int]) ->
 
 
 def _lead(names: tuple[str, ...]) -> int:
-    """Give the column that tells most rows apart: time, or the first."""
+    """Return the column that tells most rows apart: time, or the first."""
     return names.index("time_s") if "time_s" in names else 0
 
 

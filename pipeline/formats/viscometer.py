@@ -69,7 +69,7 @@ def recording(
     """
     if not readings:
         raise RawFileError(
-            file.path, "no readings: the file ends with its header", mend="export the file again"
+            file.path, "no readings: the file ends with its header", hint="export the file again"
         )
     kept = [i for i, r in enumerate(readings) if not r.missing]
     if not kept:
@@ -78,7 +78,7 @@ def recording(
             f"none of the {len(readings)} readings is a number",
             line=readings[0].line,
             value=readings[0].missing,
-            mend="measure with a rotor and speed that keep the torque between 10 and 100 %",
+            hint="measure with a rotor and speed that keep the torque between 10 and 100 %",
         )
     names = [n for n in readings[kept[0]].numbers if all(n in readings[i].numbers for i in kept)]
     columns = {clock: times[kept]}

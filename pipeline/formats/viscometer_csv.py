@@ -88,7 +88,7 @@ def _read(file: RawFile) -> Recording:
     if found is None:
         raise RawFileError(
             file.path, "no row of labels with a time and a viscosity", value=file.head[0],
-            mend="leave the register's `format` empty to have the form detected",
+            hint="leave the register's `format` empty to have the form detected",
         )  # fmt: skip
     first, labels = found
     _check(file, first + 1, labels)
@@ -96,7 +96,7 @@ def _read(file: RawFile) -> Recording:
     if lines[-1] and not file.ends_open:
         raise RawFileError(
             file.path, "no line end after the last row, so its last number may be cut",
-            len(lines), value=lines[-1], mend="export the file again",
+            len(lines), value=lines[-1], hint="export the file again",
         )  # fmt: skip
     while lines and not lines[-1].strip():
         lines.pop()
@@ -184,7 +184,7 @@ def _since_start(
     if back.size:
         raise RawFileError(
             file.path, "the elapsed time steps back", readings[back[0] + 1].line,
-            mend="one file holds one run, in the order of time",
+            hint="one file holds one run, in the order of time",
         )  # fmt: skip
     return clock, np.asarray(start.sum() + times)
 

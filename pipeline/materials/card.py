@@ -98,7 +98,7 @@ class MaterialCard:
         return any(r.key == key for r in self.records)
 
     def __getitem__(self, key: str) -> Quantity:
-        """Give the quantity of a key, as `record` without conditions does.
+        """Return the quantity of a key, as `record` without conditions does.
 
         Raises
         ------
@@ -114,7 +114,7 @@ class MaterialCard:
         return record.quantity
 
     def record(self, key: str, **conditions: Condition | None) -> PropertyRecord:
-        """Give the one record of a key under these conditions.
+        """Return the one record of a key under these conditions.
 
         Parameters
         ----------
@@ -135,7 +135,7 @@ class MaterialCard:
         return choose(found, f"{key} of {self.material}", conditions)
 
     def law(self, key: str, **conditions: Condition | None) -> Law:
-        """Give the one law of a key under these conditions, chosen as `record` does.
+        """Return the one law of a key under these conditions, chosen as `record` does.
 
         Raises
         ------
@@ -200,7 +200,7 @@ class MaterialCard:
         return str(self.to_document()["release"])
 
     def to_json(self) -> bytes:
-        """Give the bytes of the card's file: the same for the same content."""
+        """Return the bytes of the card's file: the same for the same content."""
         text = json.dumps(self.to_document(), indent=2, ensure_ascii=False, allow_nan=False)
         return (text + "\n").encode()
 
@@ -243,7 +243,7 @@ def _there(entries: Sequence[PropertyRecord | Law]) -> str:
 
 
 def _identity(entry: PropertyRecord | Law) -> tuple[str, str, str]:
-    """Give what tells an entry from the others of its card."""
+    """Return what tells an entry from the others of its card."""
     conditions = doc.canonical_json(CONDITIONS_KIND.write(entry.conditions))
     return entry.key, entry.campaign, conditions
 

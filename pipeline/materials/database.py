@@ -134,7 +134,7 @@ def write_database(
 
 
 def _inserts(connection: sqlite3.Connection) -> dict[str, str]:
-    """Give the statement that fills a row of each table."""
+    """Return the statement that fills a row of each table."""
     tables = connection.execute("SELECT name FROM sqlite_schema WHERE type = 'table'").fetchall()
     inserts = {}
     for (table,) in tables:
@@ -224,11 +224,11 @@ class Database(Mapping[str, MaterialCard]):
         return to_frame(self.values(), ranges, units)
 
     def files(self) -> tuple[FileEntry, ...]:
-        """Give the account of every file under `raw/`, by path."""
+        """Return the account of every file under `raw/`, by path."""
         return tuple(FileEntry(*row) for row in self._rows("SELECT * FROM files ORDER BY path"))
 
     def failures(self) -> tuple[Failure, ...]:
-        """Give the internal errors of the run that made this release, by stage and subject."""
+        """Return the internal errors of the run that made this release, by stage and subject."""
         rows = self._rows("SELECT * FROM failures ORDER BY stage, subject")
         return tuple(
             Failure(stage, subject, error, traceback, tuple(json.loads(files)))

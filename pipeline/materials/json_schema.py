@@ -28,7 +28,7 @@ def card_schema() -> Document:
 
 
 def schema_text() -> str:
-    """Give the text of `docs/card.schema.json`."""
+    """Return the text of `docs/card.schema.json`."""
     return json.dumps(card_schema(), indent=2, ensure_ascii=False) + "\n"
 
 
@@ -50,7 +50,7 @@ def _described(field: Field) -> Document:
 
 
 def _definitions(cls: Any) -> Iterator[tuple[str, Any]]:
-    """Give what the fields of a class refer to, by name; what is named twice is the same."""
+    """Return what the fields of a class refer to, by name; what is named twice is the same."""
     for field in fields_of(cls):
         yield from field.kind.definitions.items()
         below = field.kind.rows_of

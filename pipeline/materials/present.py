@@ -57,12 +57,12 @@ def card_text(card: MaterialCard) -> str:
 
 
 def title(card: MaterialCard) -> str:
-    """Give the name that people read, and the id where it is another word."""
+    """Return the name that people read, and the id where it is another word."""
     return card.name if card.name == card.material else f"{card.name} ({card.material})"
 
 
 def synthetic_lines(card: MaterialCard, campaign: str | None = None) -> list[str]:
-    """Give the banner of a card, or of one campaign's values; no line if all was measured."""
+    """Return the banner of a card, or of one campaign's values; no line if all was measured."""
     simulated = [credit.campaign for credit in card.campaigns if credit.synthetic]
     known = [credit.campaign for credit in card.campaigns]
     if campaign in known:
@@ -124,7 +124,7 @@ def _wrapped(line: str, indent: str = "  ") -> list[str]:
 
 
 def _flag_details(card: MaterialCard) -> dict[str, str]:
-    """Give each flag's name with the detail of the first entry that has it."""
+    """Return each flag's name with the detail of the first entry that has it."""
     entries: list[PropertyRecord | Law] = [*_in_table_order(card.records), *card.laws]
     details: dict[str, str] = {}
     for entry in entries:
@@ -155,7 +155,7 @@ def _table(card: MaterialCard, flags: Sequence[str]) -> list[str]:
 
 
 def _common_conditions(records: Sequence[PropertyRecord]) -> dict[str, Condition]:
-    """Give the conditions that all of several records share."""
+    """Return the conditions that all of several records share."""
     if len(records) < 2:
         return {}
     return {

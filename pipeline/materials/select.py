@@ -15,7 +15,7 @@ Asked = Mapping[str, Condition | None]
 
 
 def choose(entries: Sequence[E], what: str, asked: Asked) -> E:
-    """Give the one entry that a question means.
+    """Return the one entry that a question means.
 
     Parameters
     ----------

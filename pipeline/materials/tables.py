@@ -38,13 +38,13 @@ Row = tuple[Cell, ...]
 
 
 def listed_in(cls: Any) -> tuple[Field, ...]:
-    """Give the fields of a class that have rows in a table of their own."""
+    """Return the fields of a class that have rows in a table of their own."""
     return tuple(field for field in fields_of(cls) if field.kind.rows_of is not None)
 
 
 @cache
 def stored_fields(cls: Any) -> tuple[Field, ...]:
-    """Give the fields of a class that have columns, in the order of these."""
+    """Return the fields of a class that have columns, in the order of these."""
     listed = [field for field in fields_of(cls) if field.columns]
     return tuple(sorted(listed, key=lambda field: Mark.IN_FRONT not in field.marks))
 
@@ -100,25 +100,25 @@ VERSION = int.from_bytes(hashlib.sha256(TABLES.encode()).digest()[:4]) >> 1
 
 
 def provenance_rows(provenance: Provenance) -> list[Row]:
-    """Give the one row of `release`."""
+    """Return the one row of `release`."""
     told = (provenance.stages, provenance.environment, provenance.config)
     return [(1, provenance.version, provenance.code, *(canonical_json(dict(t)) for t in told))]
 
 
 def file_rows(files: Iterable[FileEntry]) -> list[Row]:
-    """Give the rows of `files`, by path."""
+    """Return the rows of `files`, by path."""
     return [astuple(entry) for entry in sorted(files, key=lambda entry: entry.path)]
 
 
 def failure_rows(failures: Iterable[Failure]) -> list[Row]:
-    """Give the rows of `failures`, by stage and subject."""
+    """Return the rows of `failures`, by stage and subject."""
     return sorted(
         (f.stage, f.subject, f.error, f.traceback, canonical_json(list(f.files))) for f in failures
     )
 
 
 def card_rows(card: Document, ids: Iterator[int]) -> Iterator[tuple[str, Row]]:
-    """Give every row of one card with its table, in the order of the card's document.
+    """Return every row of one card with its table, in the order of the card's document.
 
     Parameters
     ----------

@@ -54,7 +54,7 @@ class Trace:
         return "\n".join(_lines(self))
 
     def to_document(self) -> Document:
-        """Give the trace as a JSON object, SI units."""
+        """Return the trace as a JSON object, SI units."""
         return _document(self)
 
 
@@ -88,7 +88,7 @@ def trace(db: Database, material: str, key: str, **conditions: Condition | None)
 
 
 def percent_of_variance(budget: Sequence[Contribution]) -> list[float]:
-    """Give each contribution's part of the combined variance in percent."""
+    """Return each contribution's part of the combined variance in percent."""
     total = math.fsum(c.u**2 for c in budget)
     return [100.0 * c.u**2 / total if total else 0.0 for c in budget]
 

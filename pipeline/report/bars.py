@@ -36,7 +36,7 @@ _Slot = tuple[ModulusBar, float]  # a bar and where it stands
 
 
 def height_for(bars: Sequence[ModulusBar]) -> float:
-    """Give the height of the figure that these bars need, without legend `[in]`."""
+    """Return the height of the figure that these bars need, without legend `[in]`."""
     slots = math.fsum(_height_of(name, bars) + _GAP for name in _materials(bars))
     return _MARGINS_in + _BAR_in * max(slots, 3.0)
 

@@ -95,7 +95,7 @@ def figure_style(name: str) -> Iterator[None]:
 
 
 def new_figure(height_in: float = AXES_HEIGHT_in) -> tuple[Figure, Axes]:
-    """Give an empty figure of a page's width with one pair of axes; call within `figure_style`."""
+    """An empty figure of a page's width with one pair of axes; call within `figure_style`."""
     figure = Figure(figsize=(PAGE_WIDTH_in, height_in), layout="constrained")
     FigureCanvasAgg(figure)
     return figure, figure.add_subplot()

@@ -36,7 +36,7 @@ def audit(folders: Folders) -> dict[str, Any]:
         "files": [asdict(e) for e in entries],
         "manifest": document["manifest"],
         "internal_errors": document["internal_errors"],
-        "left_alone": document["left_alone"],
+        "ignored": document["ignored"],
         "unaccounted": sorted(there - set(counts)),
         "twice": sorted(path for path, n in counts.items() if n > 1),
     }
@@ -66,8 +66,8 @@ def audit_text(document: dict[str, Any]) -> str:
             lines += [f"    {line}" for line in (e["traceback"] or e["error"]).splitlines()]
     for what in ("unaccounted", "twice"):
         lines += [f"{what}: {path}" for path in document[what]]
-    if document["left_alone"]:
-        lines += ["", f"left alone: {', '.join(document['left_alone'])}"]
+    if document["ignored"]:
+        lines += ["", f"ignored: {', '.join(document['ignored'])}"]
     return "\n".join(lines)
 
 

@@ -83,11 +83,11 @@ class Book:
         self.state.forget(stage, [subject])
 
     def result(self, stage: str, subject: str) -> Any:
-        """Give what was made of a subject in an earlier run."""
+        """Return what was made of a subject in an earlier run."""
         return pickle.loads(self.state.result(stage, subject))
 
     def earlier(self, stage: str, subject: str, components: Mapping[str, str]) -> Any:
-        """Give what an earlier run made of a subject, None where nothing or by other code.
+        """Return what an earlier run made of a subject, None where nothing or by other code.
 
         What other code pickled may have fields that this code does not know.
         """

@@ -17,7 +17,7 @@ def describe(
     bench: Bench,
     groups: Sequence[Group],
     files: Sequence[FileEntry],
-    left_alone: Sequence[str],
+    ignored: Sequence[str],
     release: str,
 ) -> dict[str, Any]:
     """Say what was read, fitted, refused and rejected, and whether all is well."""
@@ -35,7 +35,7 @@ def describe(
             for s in bench.surveys
             if s.campaign
         ],
-        "left_alone": list(left_alone),
+        "ignored": list(ignored),
         "files": {status: counts[status] for status in get_args(Status)},
         "values": sum(len(s.records) for s in summaries),
         "materials": len({g.material for g in groups}),

@@ -92,7 +92,7 @@ def run_design(
 def _cards(
     folders: Folders, files: Sequence[Path], wanted: Sequence[str]
 ) -> dict[str, MaterialCard]:
-    """Give the cards of these files, or all of the database where there are none."""
+    """Return the cards of these files, or all of the database where there are none."""
     if not files:
         with open_database(folders.processed) as database:  # names the nearest of a wrong material
             return {

@@ -34,7 +34,7 @@ def look(folders: Folders) -> dict[str, Stat]:
 
 
 def locate(path: str, folders: Folders) -> Path:
-    """Give the place on disk of a path that `look` listed."""
+    """Return the place on disk of a path that `look` listed."""
     prefix, _, rest = path.partition("/")
     return {"raw": folders.raw, "config": folders.config, "code": _PACKAGE}[prefix] / rest
 

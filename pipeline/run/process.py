@@ -70,7 +70,7 @@ def process(
     """
     hashes = hash_inputs(seen, folders, state, verify)
     config = load_config(folders.config, {t.key: t.config for t in TECHNIQUES.values()})
-    surveys, broken, left_alone = look_at_raw(folders, seen, hashes, config)
+    surveys, broken, ignored = look_at_raw(folders, seen, hashes, config)
     book = Book(state)
     stages = find_stages(TECHNIQUES, hashes, state)
     with Workers(workers) as pool:
@@ -93,7 +93,7 @@ def process(
         book.close()
         name = contents_id(release.building)
         place = release.publish(name)
-    document = describe(bench, groups, files, left_alone, name)
+    document = describe(bench, groups, files, ignored, name)
     state.remember_inputs(seen, hashes)
     state.note("published", listing(place))
     return document
@@ -105,7 +105,7 @@ def look_at_raw(
     """Survey every campaign; name what is no campaign."""
     if not folders.raw.is_dir():
         raise ConfigError(f"no folder {folders.raw}; give one with --raw")
-    found, left_alone = find_campaigns(folders.raw)
+    found, ignored = find_campaigns(folders.raw)
     spellings = Spellings()
     for material in config.materials:
         spellings.other("material", material, "config/materials.toml")
@@ -124,7 +124,7 @@ def look_at_raw(
             broken.append(done)
             done = without_survey(done, sizes, sums, TECHNIQUES)
         surveys.append(done)
-    return surveys, broken, left_alone
+    return surveys, broken, ignored
 
 
 def _account(surveys: list[Survey], measured: list[Measured]) -> list[FileEntry]:

@@ -206,7 +206,7 @@ def _writes(card: MaterialCard) -> Callable[[Release], Sequence[Failure]]:
 
 
 def card_file(card: MaterialCard) -> bytes:
-    """Give the content of a card's file."""
+    """Return the content of a card's file."""
     return card.to_json()
 
 

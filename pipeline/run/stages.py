@@ -32,7 +32,7 @@ class Stages:
     fingerprints: Mapping[str, Fingerprint]
 
     def parts(self, stage: str) -> dict[str, str]:
-        """Give the components that the code of a stage adds to a key."""
+        """Return the components that the code of a stage adds to a key."""
         found = self.fingerprints[stage]
         return {
             "code": found.code,
@@ -41,7 +41,7 @@ class Stages:
         }
 
     def libraries(self) -> dict[str, str]:
-        """Give the version of every library that some stage computes with."""
+        """Return the version of every library that some stage computes with."""
         return dict(sorted({lib for one in self.fingerprints.values() for lib in one.libraries}))
 
 

@@ -97,7 +97,7 @@ class State:
         return {subject: (key, json.loads(parts)) for subject, key, parts in rows}
 
     def result(self, stage: str, subject: str) -> bytes:
-        """Give what a stage made of a subject."""
+        """Return what a stage made of a subject."""
         (blob,) = self.db.execute(
             "SELECT result FROM made WHERE stage = ? AND subject = ?", [stage, subject]
         ).fetchone()
@@ -127,7 +127,7 @@ class State:
         self.db.execute("INSERT OR REPLACE INTO note VALUES (?, ?)", [name, value])
 
     def read_note(self, name: str) -> str | None:
-        """Give the word that an earlier run kept, None if there was none."""
+        """Return the word that an earlier run kept, None if there was none."""
         row = self.db.execute("SELECT value FROM note WHERE name = ?", [name]).fetchone()
         return None if row is None else str(row[0])
 

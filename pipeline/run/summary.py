@@ -18,8 +18,8 @@ def text(document: Mapping[str, Any]) -> str:
         ),
         "files      " + ", ".join(f"{n} {status}" for status, n in files.items()),
     ]
-    if document["left_alone"]:
-        lines.append(f"left alone {', '.join(document['left_alone'])} (no campaign.toml)")
+    if document["ignored"]:
+        lines.append(f"ignored {', '.join(document['ignored'])} (no campaign.toml)")
     lines.append(
         f"values     {document['values']} of {document['materials']} materials, "
         f"{len(document['refused'])} refused"

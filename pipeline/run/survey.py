@@ -125,7 +125,7 @@ def _entry(
     name = path.partition("/")[2]
     role = _role(path, techniques)
     if name in difference.changed:
-        reason = "its bytes are not the registered ones"
+        reason = "file content differs from the manifest"
         return FileEntry(path, sha256, size, role, "used", "changed", reason)
     if name in difference.extra:
         return FileEntry(path, sha256, size, role, "used", "extra", "not in the manifest")
@@ -198,7 +198,7 @@ def _register(
     try:
         if path != f"{folder.name}/{name}/{form.file}":
             raise RawFileError(
-                path, f"the register of {name} is called {form.file}", mend="give it that name"
+                path, f"the register of {name} is called {form.file}", hint="give it that name"
             )
         register = read_register(
             data, path, folder.name, name, techniques[name].required, config.instruments.gauges,
@@ -225,7 +225,7 @@ def _register(
 
 
 def _claim(specimen: Specimen, result: Survey, owners: dict[str, Specimen]) -> bool:
-    """Give a row its file, once; say whether the row can be measured.
+    """Return a row its file, once; say whether the row can be measured.
 
     Raises
     ------

@@ -28,7 +28,7 @@ class Task:
     Parameters
     ----------
     sha256 : of its file as planned; a file that changed since is an error, not a surprise
-    changed : its bytes are not the registered ones
+    changed : file content differs from the manifest
     """
 
     raw: Path
@@ -93,14 +93,14 @@ def source_of(specimen: Specimen) -> str:
 def _read(task: Task, path: str) -> Recording:
     file = RawFile(path, whole_file(task.raw / path), task.ends_open)
     if file.sha256 != task.sha256:
-        raise RawFileError(path, "the file changed while it was being read", mend="run again")
+        raise RawFileError(path, "the file changed while it was being read", hint="run again")
     recording = _format(task.specimen, file).read(file)
     if task.changed:
         campaign = task.specimen.campaign
         raise RawFileError(
             path,
-            "its bytes are not the registered ones",
-            mend=f"restore it, or look at `deamat register {campaign}` and accept the change",
+            "file content differs from the manifest",
+            hint=f"restore it, or look at `deamat register {campaign}` and accept the change",
         )
     return recording
 

@@ -93,7 +93,7 @@ class SimulatedRamp:
 
 
 def true_shape(material: str) -> float:
-    """Give the Weibull shape that the twin has chosen for a material."""
+    """Return the Weibull shape that the twin has chosen for a material."""
     return _PLANS[material].shape
 
 

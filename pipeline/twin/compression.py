@@ -140,7 +140,7 @@ def compression_truth() -> tuple[TrueValue, ...]:
 
 @cache
 def _without_toe() -> float:
-    """Give the toe-compensated slope of a modulus of 1, averaged over the toes that are drawn."""
+    """Return the toe-compensated slope of a modulus of 1, averaged over the toes that are drawn."""
     nodes, weights = np.polynomial.legendre.leggauss(8)
     low, high = _TOE
     toes = low + 0.5 * (high - low) * (nodes + 1.0)

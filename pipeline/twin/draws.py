@@ -38,7 +38,7 @@ class Calibration:
     force, displacement : relative errors of load cell and crosshead `[1]`
     voltage : relative error of the high-voltage monitor, common to all techniques `[1]`
     caliper_m, micrometer_m : errors of the gauges, common to all techniques `[m]`
-    torque : error of a viscometer's zero, as part of full scale `[1]`
+    torque : error of a viscometer's zero, as fraction of full scale `[1]`
     """
 
     force: float

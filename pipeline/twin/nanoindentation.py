@@ -60,7 +60,7 @@ _OFFSET_N, _TILT_N_PER_M = 5e-7, 0.3
 
 
 def true_modulus(material: str) -> TrueValue:
-    """Give the twin's own indentation modulus: the compressive one, stiffened by a factor.
+    """Return the twin's own indentation modulus: the compressive one, stiffened by a factor.
 
     Raises
     ------

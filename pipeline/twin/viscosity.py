@@ -15,7 +15,7 @@ sweep on that would take 0.6 rpm over range. Register and configuration name it 
 Errors of each instrument, in parts of full scale: one error of the zero of torque for the whole
 campaign (standard deviation 0.25 %, what a check against a standard oil leaves) and noise of every
 reading (0.3 %). A viscometer that has not been checked may be wrong by 2 % of full scale, which no
-number of readings would mend.
+number of readings would remove.
 
 Logs: batch 1 is stamped with date and time, batch 2 with the time of day alone, batch 3 with an
 offset; all of them run past midnight. Sylgard 182 (40:1) is a plain CSV in hours and Pa.s.
@@ -131,7 +131,7 @@ def simulate_viscosity(seed: int, material: str, batch: int) -> SimulatedRun:
 
 
 def machine_of(material: str) -> Machine:
-    """Give the viscometer that a material is measured on."""
+    """Return the viscometer that a material is measured on."""
     return STRONGER if material == ON_STRONGER_SPRING else VISCOMETER
 
 

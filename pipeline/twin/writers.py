@@ -141,7 +141,7 @@ def ndj8s_log(
 
     Parameters
     ----------
-    readings : rotor, speed in rpm, viscosity in Pa.s (None: over range) and torque (part of full)
+    readings : rotor, speed in rpm, viscosity in Pa.s (None: over) and torque (fraction of full)
     temperatures_C : None where there was no probe
     """
     lines = [f"# {remark}" for remark in remarks]

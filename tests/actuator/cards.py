@@ -31,7 +31,7 @@ def record(
     n: int = 5,
     conditions: Mapping[str, Condition] = NONE,
 ) -> PropertyRecord:
-    """Give a record with relative independent and shared uncertainty."""
+    """Return a record with relative independent and shared uncertainty."""
     technique = {"compressive_modulus": "compression", "relative_permittivity": "permittivity"}
     lines = tuple(
         Contribution(source, share * value, shared)
@@ -65,7 +65,7 @@ def card(
     synthetic: bool = False,
     conditions: Mapping[str, Condition] = NONE,
 ) -> MaterialCard:
-    """Give a card with modulus, permittivity and, if a strength is given, breakdown."""
+    """Return a card with modulus, permittivity and, if a strength is given, breakdown."""
     records = [
         record(material, "compressive_modulus", modulus_Pa, "Pa", conditions=conditions),
         record(
@@ -88,7 +88,7 @@ def card(
 
 
 def cards(*, synthetic: bool = False, breakdown: bool = True) -> dict[str, MaterialCard]:
-    """Give a stiff, a soft and a very soft one; the last one has no breakdown."""
+    """Return a stiff, a soft and a very soft one; the last one has no breakdown."""
     strength = (90e6, 50e6) if breakdown else (None, None)
     return {
         "stiff": card("stiff", 1e6, strength_V_m=strength[0], synthetic=synthetic),

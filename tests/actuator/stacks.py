@@ -13,7 +13,7 @@ DENSITY_kg_m3 = 1030.0
 
 
 def layer(role: Role, thickness_m: Reals, modulus_Pa: Reals, width_m: Reals = WIDTH_m) -> Layer:
-    """Give a layer with the film properties of Sylgard 182 (10:1)."""
+    """Return a layer with the film properties of Sylgard 182 (10:1)."""
     return Layer(role, thickness_m, modulus_Pa, width_m, DENSITY_kg_m3, 2.58, 0.49)
 
 
@@ -46,7 +46,7 @@ def random_unimorphs(count: int, n_active: int, seed: int) -> Unimorph:
 
 
 def strip() -> Stack:
-    """Give the measured design 1 of Sikulskyi et al. 2022, Table 5."""
+    """Return the measured design 1 of Sikulskyi et al. 2022, Table 5."""
     return Stack(
         (
             layer("passive", 304e-6, 0.957e6),

@@ -32,7 +32,7 @@ def heights_mm() -> FloatArray:
 
 
 def deck(held: bool) -> str:
-    """Give one row of quadratic bricks a layer; the film grows along the strip only.
+    """Return one row of quadratic bricks a layer; the film grows along the strip only.
 
     The root is a plane of symmetry, one node of it is held in height, one face across the width.
     N, mm, MPa.

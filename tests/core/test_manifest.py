@@ -24,7 +24,7 @@ def test_departures_are_told_apart() -> None:
 
 @pytest.mark.parametrize(
     ("text", "message"),
-    [("abc  file\n", "M, line 1: not a line of sha256sum"), (f"{_A}  f\n{_B}  f\n", "M, line 2: a file stands twice")],
+    [("abc  file\n", "M, line 1: not a line of sha256sum"), (f"{_A}  f\n{_B}  f\n", "M, line 2: a file is listed twice")],
 )  # fmt: skip
 def test_a_bad_line_is_named(text: str, message: str) -> None:
     with pytest.raises(RawFileError) as caught:

@@ -59,7 +59,7 @@ def test_a_bad_cell_is_refused_by_line_column_and_value(
     cell = f'"{text}"' if sample.quoted else text
     error = refused(sample.with_cell(ROW, COLUMN, cell))
     assert facts(error) == (reason, sample.first + ROW, COLUMN + 1, cell.strip())
-    assert error.mend
+    assert error.hint
 
 
 @every_sample
@@ -101,7 +101,7 @@ def test_the_wrong_decimal_mark_is_refused(sample: Sample) -> None:
         assert facts(error) == ("a decimal point in a file with decimal commas", *place)
     elif sample.delimiter == "," and not sample.quoted:
         assert error.reason.startswith("too many fields")
-        assert error.mend.endswith("without thousands separators and with decimal points")
+        assert error.hint.endswith("without thousands separators and with decimal points")
     else:
         assert facts(error) == ("a decimal comma in a file with decimal points", *place)
 
@@ -170,7 +170,7 @@ def test_a_file_cut_inside_its_last_number_is_refused(sample: Sample) -> None:
         return
     reason = "no line end after the last row, so its last number may be cut"
     assert facts(error) == (reason, sample.last, sample.width, last)
-    assert "set `ends_open = true` in campaign.toml" in error.mend
+    assert "set `ends_open = true` in campaign.toml" in error.hint
 
 
 @every_sample
@@ -248,7 +248,7 @@ def test_utf_16_without_its_mark_is_refused() -> None:
     text = "\n".join(BY_NAME["nexygen"].lines)
     error = refused(RawFile("x", text.encode("utf-16-le")))
     assert error.reason == "a NUL byte in a text file"
-    assert error.mend.endswith("(UTF-16 text must start with its byte order mark)")
+    assert error.hint.endswith("(UTF-16 text must start with its byte order mark)")
 
 
 def test_utf_16_cut_inside_a_character_is_refused() -> None:

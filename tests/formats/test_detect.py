@@ -81,7 +81,7 @@ def test_two_formats_that_match_are_an_error(monkeypatch: pytest.MonkeyPatch) ->
         "time_s,ch1_C,ch2_C\n0.0,0.1,0.2\n",  # a logger's
     ],
 )
-def test_other_instruments_are_left_alone(text: str) -> None:
+def test_other_instruments_are_ignored(text: str) -> None:
     assert "no format recognises this file" in refused(text.encode())
 
 

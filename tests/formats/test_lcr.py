@@ -1,4 +1,4 @@
-"""Sweeps of LCR meters: read with what they are, or refused by line, reason and mend."""
+"""Sweeps of LCR meters: read with what they are, or refused by line, reason and hint."""
 
 from __future__ import annotations
 

@@ -57,7 +57,7 @@ VISCOMETER = (
     Trap(
         "error +-2 % of full scale [R] (so +-20 % of reading at 10 %)", "an undeclared instrument",
         log(), "viscosity", STAMPED, values=VISCOSITIES, shared={"viscosity": 0.01 * 10.0},
-        words="errors a constant part of full scale (0.30% noise of a reading, 1.00% calibration",
+        words="errors a constant fraction of full scale (0.30% noise of a reading, 1.00% calibration",
     ),
     Trap(
         "Over-range `EEEE`", "over range in one line",

@@ -45,7 +45,7 @@ def test_a_changed_file_is_rejected_until_it_is_accepted(folders: Folders) -> No
     path.write_bytes(path.read_bytes().replace(b"0.2", b"0.3", 1))
     assert audit(folders)["exit_code"] == 1
     assert _fate(folders, path)["status"] == "rejected"
-    assert "its bytes are not the registered ones" in str(_fate(folders, path)["reason"])
+    assert "file content differs from the manifest" in str(_fate(folders, path)["reason"])
     shown = register(folders.raw, "demo", accept=False)
     assert shown.pending
     assert f"changed  {path.relative_to(folders.raw / 'demo').as_posix()}" in shown.text
@@ -109,11 +109,11 @@ def test_a_campaign_file_that_cannot_be_read_rejects_the_campaign(folders: Folde
     assert document["values"] == 0
 
 
-def test_folders_without_a_campaign_file_are_named_and_left_alone(folders: Folders) -> None:
+def test_folders_without_a_campaign_file_are_named_and_ignored(folders: Folders) -> None:
     (folders.raw / "loose").mkdir()
     (folders.raw / "loose" / "a.csv").write_text("1\n")
     document = run(folders)
-    assert document["left_alone"] == ["loose/"]
+    assert document["ignored"] == ["loose/"]
     assert document["exit_code"] == 0
 
 

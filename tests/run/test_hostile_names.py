@@ -62,7 +62,7 @@ def ran(tmp_path_factory: pytest.TempPathFactory) -> Ran:
 
 
 def _add_rows(folders: Folders) -> None:
-    """Give each good row a condition of its own, and add one row for each name."""
+    """Return each good row a condition of its own, and add one row for each name."""
     place = folders.raw / "demo" / "compression"
     with (place / "specimens.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))

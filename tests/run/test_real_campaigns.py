@@ -40,7 +40,7 @@ def test_the_run_is_well(real: tuple[Folders, dict[str, Any]]) -> None:
     _, document = real
     assert document["exit_code"] == 0
     assert document["rejected"] == []
-    assert "flow/" in document["left_alone"]
+    assert "flow/" in document["ignored"]
 
 
 def test_published_moduli_within_five_percent(

@@ -126,7 +126,7 @@ def _profile(depth: FloatArray, load: FloatArray, exponent: float) -> Callable[[
 
 
 def _described(depth: FloatArray, load: FloatArray, exponent: float, depth0: float) -> Contact:
-    """Give all parameters at the best contact point, with their standard errors."""
+    """Return all parameters at the best contact point, with their standard errors."""
     touching = depth > depth0
     above = np.maximum(depth - depth0, 0.0)
     columns = np.column_stack([np.ones_like(depth), depth, above**exponent])

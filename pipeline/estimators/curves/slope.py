@@ -50,7 +50,7 @@ class Line:
 
 
 def _sum_over_lags(x: FloatArray, rho: float) -> float:
-    """Give `sum_ij x_i x_j rho^|i-j|` by a recursive filter whose reach doubles at each pass."""
+    """Return `sum_ij x_i x_j rho^|i-j|` by a recursive filter whose reach doubles at each pass."""
     filtered = x.copy()
     reach, power = 1, rho
     while reach < x.size and power > 1e-12:

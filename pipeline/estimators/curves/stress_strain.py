@@ -13,7 +13,7 @@ from deamat.core.errors import FitRefused
 
 IndexArray = NDArray[np.intp]
 
-_REVERSAL = 0.05  # a return by this part of the greatest strain ends a loading, less is wobble
+_REVERSAL = 0.05  # a return by this fraction of the greatest strain ends a loading, less is wobble
 _EDGE = 1e-9  # strain: 1.5 mm / 30 mm belongs to a window that ends at 5 %, however it rounds
 MISSABLE = 0.1  # part of a window that may be missing at either end
 

@@ -25,7 +25,7 @@ _PF_PER_MM = 1e-9  # in F/m
 
 
 def edge_terms(edge: str, thickness_m: float, perimeter_m: float) -> tuple[float, float]:
-    r"""Give a and b of the edge's complex capacitance $C_e^* = a + b\, \epsilon_r^*$ `[F]`.
+    r"""Return a and b of the edge's complex capacitance $C_e^* = a + b\, \epsilon_r^*$ `[F]`.
 
     Parameters
     ----------

@@ -43,7 +43,7 @@ class Pair:
 def complex_capacitance(
     mode: str, frequency_Hz: FloatArray, primary: FloatArray, secondary: FloatArray
 ) -> ComplexArray:
-    """Give the complex capacitance behind what a meter shows.
+    """Return the complex capacitance behind what a meter shows.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def complex_capacitance(
 def shown(
     mode: str, frequency_Hz: FloatArray, capacitance_F: ComplexArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Give what a meter shows of a complex capacitance: the inverse of `complex_capacitance`.
+    """Return what a meter shows of a complex capacitance: the inverse of `complex_capacitance`.
 
     Without any loss there is no parallel resistance to show: Cp-Rp then divides by zero.
     """
@@ -81,13 +81,13 @@ def shown(
 
 
 def impedance(frequency_Hz: FloatArray, capacitance_F: ComplexArray) -> ComplexArray:
-    """Give the complex impedance $Z = 1 / (j omega C^*)$, shape (n,) `[ohm]`."""
+    """Return the complex impedance $Z = 1 / (j omega C^*)$, shape (n,) `[ohm]`."""
     result: ComplexArray = 1.0 / (2j * math.pi * frequency_Hz * capacitance_F)
     return result
 
 
 def loss_tangent(capacitance_F: ComplexArray) -> FloatArray:
-    r"""Give $\tan\delta = -\mathrm{Im}\,C^* / \mathrm{Re}\,C^*$, shape (n,) `[1]`."""
+    r"""Return $\tan\delta = -\mathrm{Im}\,C^* / \mathrm{Re}\,C^*$, shape (n,) `[1]`."""
     return -capacitance_F.imag / capacitance_F.real
 
 

@@ -24,7 +24,7 @@ _LINEAR = 1e-12  # below this p/Y the two forms agree to the last digit
 
 
 def squeezed_stretch(pressure_ratio: float) -> float:
-    r"""Give $\lambda$ at a pressure: the root of $\lambda^3 + 3 x \lambda - 1 = 0$ with x = p/Y.
+    r"""Return $\lambda$ at a pressure: the root of $\lambda^3 + 3 x \lambda - 1 = 0$ with x = p/Y.
 
     $\lambda = 2 \sqrt{x} \sinh\big(\tfrac13 \mathrm{arsinh}(\tfrac12 x^{-3/2})\big)$
 

@@ -30,7 +30,7 @@ class Position:
     interpolated: bool
 
     def of(self, values: FloatArray) -> float:
-        """Give the value of a column (n,) at this position."""
+        """Return the value of a column (n,) at this position."""
         return float(self.weights @ values[self.indices])
 
 
@@ -45,7 +45,7 @@ def position(
     ----------
     frequency_Hz : all above zero, shape (n,)
     target_Hz : the frequency that is asked for
-    tolerance : a point within this part of the target is a measurement of it
+    tolerance : a point within this fraction of the target is a measurement of it
     widest_gap_decades : neighbours farther apart than this do not tell what lies between them
 
     Raises

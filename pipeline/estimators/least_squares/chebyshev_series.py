@@ -51,5 +51,5 @@ def extremes(coefficients: FloatArray) -> FloatArray:
 
 
 def lowest(coefficients: FloatArray) -> float:
-    """Give the least value of a series on [-1, 1]."""
+    """Return the least value of a series on [-1, 1]."""
     return float(np.min(evaluate(extremes(coefficients), coefficients)))

@@ -44,7 +44,7 @@ def same_length(name: str, array: FloatArray, n: int, of: str = "points") -> Non
 
 
 def error_sizes(sigma: ArrayLike | None, n: int, error_scale: ErrorScale) -> FloatArray:
-    """Give the standard deviation of every point, shape (n,); ones where none is stated.
+    """Return the standard deviation of every point, shape (n,); ones where none is stated.
 
     Raises
     ------

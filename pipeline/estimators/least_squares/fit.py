@@ -53,7 +53,7 @@ class Fit:
 
 
 def error_variance(residual_sd: float, error_scale: ErrorScale) -> float:
-    """Give 1 for a known error scale, else the variance of the residuals."""
+    """Return 1 for a known error scale, else the variance of the residuals."""
     return 1.0 if error_scale == "known" else residual_sd**2
 
 

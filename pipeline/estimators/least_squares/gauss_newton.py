@@ -18,8 +18,8 @@ GRADIENT_LIMIT = 1e-6
 _JACOBIAN_LIMIT = 0.01
 _TOLERANCE = 1e-15
 _MOST_STEPS = 30
-# Plain steps, or these parts of them, must lower the squares by this part of what the tangent
-# promises; where the gradient is this part of the residuals, Newton steps take over.
+# Plain steps, or these parts of them, must lower the squares by this fraction of what the tangent
+# promises; where the gradient is this fraction of the residuals, Newton steps take over.
 _KEPT = 0.5
 _PARTS = (1.0, 0.5, 0.25, 0.125, 0.0625)
 _NEAR = 1e-7
@@ -178,7 +178,7 @@ def walk(
 
 
 def _tangent_step(jacobian: FloatArray, residuals: FloatArray) -> tuple[FloatArray, float]:
-    """Give the step to the lowest point of the tangent, and the fall of the squares there."""
+    """Return the step to the lowest point of the tangent, and the fall of the squares there."""
     normal = jacobian.T @ jacobian
     lengths = np.sqrt(normal.diagonal())
     scaled = normal / lengths / lengths[:, None]

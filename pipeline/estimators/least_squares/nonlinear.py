@@ -20,7 +20,7 @@ from deamat.estimators.least_squares.checks import (
 from deamat.estimators.least_squares.fit import Fit, error_variance, weighted_residual_sd
 from deamat.estimators.least_squares.gauss_newton import Minimum, Problem, descend, polish, walk
 
-# A second start confirms the first if its curve lies within this part of the residuals: another
+# A second start confirms the first if its curve lies within this fraction of the residuals: another
 # minimum that near would give the same answer.
 _SAME = 1e-2
 _START_SHIFTS = (0.2, 0.5, 1.0, 0.05)

@@ -58,7 +58,7 @@ class PolynomialFit(Fit):
         return np.sqrt(np.diag(self.covariance))
 
     def __call__(self, x: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """Give value and standard uncertainty at x, both of the shape of x `[unit of y]`.
+        """Return value and standard uncertainty at x, both of the shape of x `[unit of y]`.
 
         Raises
         ------
@@ -73,7 +73,7 @@ class PolynomialFit(Fit):
         return value, np.sqrt(self.error_variance * (np.maximum(cofactor, 0.0) + unknown))
 
     def derivative(self, x: ArrayLike) -> FloatArray:
-        """Give dy/dx at x, of the shape of x.
+        """Return dy/dx at x, of the shape of x.
 
         Raises
         ------

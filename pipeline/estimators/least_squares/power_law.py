@@ -72,7 +72,7 @@ class PowerLawFit:
         return matrix
 
     def __call__(self, time: float, rate: float) -> tuple[float, float]:
-        """Give y and its standard uncertainty at one time and rate `[unit of y]`.
+        """Return y and its standard uncertainty at one time and rate `[unit of y]`.
 
         Raises
         ------
@@ -101,8 +101,8 @@ def fit_power_law(
 ) -> PowerLawFit:
     r"""Fit K and m to y > 0, by the error model of the instrument.
 
-    Errors that are a constant part of the reading: minimise
-    $\sum_i (\ln y_i - \ln K(t_i) - m(t_i) \ln q_i)^2$. Errors that are a constant part of full
+    Errors that are a constant fraction of the reading: minimise
+    $\sum_i (\ln y_i - \ln K(t_i) - m(t_i) \ln q_i)^2$. Errors that are a constant fraction of full
     scale: minimise $\sum_i (y_i - K(t_i) q_i^{m(t_i)})^2 / \sigma_i^2$. The error scale is
     estimated.
 

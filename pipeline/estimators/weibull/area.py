@@ -15,7 +15,7 @@ from deamat.estimators.weibull.fit import check_parameters
 
 
 def area_ratio(area_from: float, area_to: float, limit: float) -> float:
-    """Give area_to / area_from, if it is within the declared limit.
+    """Return area_to / area_from, if it is within the declared limit.
 
     With it, `Inference.scale`, `.quantile` and `.failure_probability` give exact intervals on the
     other area, in which shape and scale are uncertain together.
@@ -46,7 +46,7 @@ def area_ratio(area_from: float, area_to: float, limit: float) -> float:
 def scale_to_area(
     scale: float, shape: float, area_from: float, area_to: float, limit: float
 ) -> float:
-    """Give the scale on another area: E2 = E1 (A1/A2)^(1/shape).
+    """Return the scale on another area: E2 = E1 (A1/A2)^(1/shape).
 
     Parameters
     ----------

@@ -225,7 +225,7 @@ def _edge(
 
 
 def _log_density(samples: LogSamples, w: FloatArray, log_sum: FloatArray) -> FloatArray:
-    """Give ln p(w) up to a constant: equation (1) times dk/dw = k."""
+    """Return ln p(w) up to a constant: equation (1) times dk/dw = k."""
     r = samples.failures
     return (r - 1.0) * w + r * (np.exp(w) * samples.mean_failed - log_sum)
 

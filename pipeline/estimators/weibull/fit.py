@@ -215,7 +215,7 @@ def _start(samples: LogSamples) -> FloatArray:
 
 
 def quantile(scale: float, shape: float, p: float) -> float:
-    """Give the value that a fraction p does not survive: scale (-ln(1-p))^(1/shape).
+    """Return the value that a fraction p does not survive: scale (-ln(1-p))^(1/shape).
 
     Raises
     ------
@@ -228,7 +228,7 @@ def quantile(scale: float, shape: float, p: float) -> float:
 
 
 def failure_probability(scale: float, shape: float, field: float) -> float:
-    """Give the fraction that does not survive a value: 1 - exp(-(field/scale)^shape).
+    """Return the fraction that does not survive a value: 1 - exp(-(field/scale)^shape).
 
     Raises
     ------
@@ -241,7 +241,7 @@ def failure_probability(scale: float, shape: float, field: float) -> float:
 
 
 def probability_of(log_hazard: float) -> float:
-    """Give 1 - exp(-exp(log_hazard)) to all digits."""
+    """Return 1 - exp(-exp(log_hazard)) to all digits."""
     return float(-np.expm1(-np.exp(min(log_hazard, _LOG_CERTAIN))))
 
 

@@ -29,7 +29,7 @@ class PlottingPositions:
 
 
 def adjusted_ranks(values: FloatArray, failed: BoolArray) -> FloatArray:
-    """Give the ranks of the failures among all specimens, shape (r,).
+    """Return the ranks of the failures among all specimens, shape (r,).
 
     A specimen that left unbroken might have failed anywhere beyond, so each later rank grows by
     (n + 1 - last rank) / (1 + specimens left). Complete samples keep 1, 2, ..., n.
@@ -48,7 +48,7 @@ def adjusted_ranks(values: FloatArray, failed: BoolArray) -> FloatArray:
 
 
 def weibull_axis(p: ArrayLike) -> FloatArray:
-    """Give ln(-ln(1 - p)), the upright axis of Weibull paper, on which the fit is straight.
+    """Return ln(-ln(1 - p)), the upright axis of Weibull paper, on which the fit is straight.
 
     Raises
     ------
@@ -62,7 +62,7 @@ def weibull_axis(p: ArrayLike) -> FloatArray:
 
 
 def plotting_positions(x: ArrayLike, censored: ArrayLike | None = None) -> PlottingPositions:
-    """Give each failure its exact median rank: the median of a beta(i, n - i + 1) variable.
+    """Return each failure its exact median rank: the median of a beta(i, n - i + 1) variable.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def confidence_band(
     censored: ArrayLike | None = None,
     level: float = 0.95,
 ) -> tuple[FloatArray, FloatArray]:
-    """Give the exact conditional interval of the quantile at each probability.
+    """Return the exact conditional interval of the quantile at each probability.
 
     Parameters
     ----------

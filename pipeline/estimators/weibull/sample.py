@@ -42,7 +42,7 @@ class LogSamples:
     largest: FloatArray
 
     def power_sums(self, shape: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Give S0, S1/S0 and S2/S0 - (S1/S0)^2 with S_j = sum z^j exp(shape z), each (m,)."""
+        """Return S0, S1/S0 and S2/S0 - (S1/S0)^2 with S_j = sum z^j exp(shape z), each (m,)."""
         term = np.exp(shape * self.log_ratio)
         s0 = term.sum(axis=0)
         term *= self.log_ratio

@@ -61,12 +61,12 @@ def unbiased_shape(x: ArrayLike, censored: ArrayLike | None = None) -> UnbiasedS
 
 
 def ross_factor(n: int) -> float:
-    """Give (n - 2)/(n - 0.68), by which the shape of a complete sample of n is multiplied."""
+    """Return (n - 2)/(n - 0.68), by which the shape of a complete sample of n is multiplied."""
     return (n - 2.0) / (n - 0.68)
 
 
 def modified_ratio(failures: FloatArray) -> FloatArray:
-    """Give (r - 2)/r, the right side of `weibull.solve_shape` for the modified profile likelihood.
+    """Ratio (r - 2)/r, the right side of `weibull.solve_shape` for the modified profile likelihood.
 
     Its maximum over k of k^(r-2) exp(k sum_failed z) / S0(k)^r is the mode of the conditional p(k).
     """

@@ -38,7 +38,7 @@ _RATIO = "thickness of passive layer over film, t [1]"
 
 
 def mix(material: str) -> str:
-    """Give the mix ratio in an id: `sylgard-182-10to1` to `10:1`."""
+    """Return the mix ratio in an id: `sylgard-182-10to1` to `10:1`."""
     return material.rpartition("-")[2].replace("to", ":")
 
 

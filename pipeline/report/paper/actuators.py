@@ -189,7 +189,7 @@ def table5() -> list[Entry]:
 
 
 def true_field_V_m(name: str) -> float:
-    """Give the field on the thinned film of a design of Table 5 at its voltage `[V/m]`."""
+    """Return the field on the thinned film of a design of Table 5 at its voltage `[V/m]`."""
     design = own(name)
     film = design.unimorph
     nominal = printed.si(f"table5.{name}.voltage_kV") / film.active_thickness_m
@@ -239,7 +239,7 @@ def _with(design: Design, which: str, value: Reals) -> Design:
 
 
 def electrode_that_sums_up(name: str) -> float:
-    """Give the electrode thickness that a total of Table 1 means `[m]`."""
+    """Return the electrode thickness that a total of Table 1 means `[m]`."""
     u = own(name).unimorph
     total = to_si(printed.value(f"text.total_of_{name}_um"), "um")
     return float(total - u.passive_thickness_m - u.active_thickness_m) / 2.0

@@ -93,7 +93,7 @@ class Strip:
 
     @property
     def off(self) -> float:
-        """How far the linear tip is off, as part of the elastica's deflection."""
+        """How far the linear tip is off, as a fraction of the elastica's deflection."""
         return float(self.linear_y[-1] / self.elastica_y[-1] - 1.0)
 
 
@@ -149,7 +149,7 @@ def _off_by_rotation() -> Entry:
 
 
 def free_strain() -> float:
-    """Give the in-plane strain of the films of Figures 4 and 5 at their breakdown strength."""
+    """Return the in-plane strain of the films of Figures 4 and 5 at their breakdown strength."""
     s = planar(
         printed.value("figure4.relative_permittivity"),
         printed.si("figure4.breakdown_strength_V_per_um"),
@@ -159,13 +159,13 @@ def free_strain() -> float:
 
 
 def at_fixed_total(total_m: Reals, modulus_ratio: Reals, ratio: Reals) -> Reals:
-    """Give the curvature of a film and passive layer of this total and thickness ratio `[1/m]`."""
+    """Curvature of a film and passive layer of this total and thickness ratio `[1/m]`."""
     active = total_m / (1.0 + ratio)
     return _bare(active * ratio, active, modulus_ratio)
 
 
 def at_fixed_film(film_m: Reals, modulus_ratio: Reals, ratio: Reals) -> Reals:
-    """Give the curvature of a passive layer `ratio` times as thick as its film `[1/m]`."""
+    """Return the curvature of a passive layer `ratio` times as thick as its film `[1/m]`."""
     return _bare(film_m * ratio, film_m, modulus_ratio)
 
 

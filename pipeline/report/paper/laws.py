@@ -82,18 +82,18 @@ def fitted(law: Law, hours: float, rate_per_s: float) -> Quantity:
 
 
 def hours_of(law: Law) -> tuple[float, float]:
-    """Give the hours that a law and Table 2 share."""
+    """Return the hours that a law and Table 2 share."""
     low, high = (end / _per_hour(law) for end in law.valid)
     return max(low, HOURS[0]), min(high, HOURS[1])
 
 
 def rates_of(law: Law) -> tuple[float, float] | None:
-    """Give the shear rates between which a power-law fluid is known `[1/s]`; else None."""
+    """Return the shear rates between which a power-law fluid is known `[1/s]`; else None."""
     return law.rates if law.kind == FLUID else None
 
 
 def rate_for(law: Law | None) -> float:
-    """Give the rate at which laws are compared: the article's, or the nearest that a law knows."""
+    """The rate at which laws are compared: the article's, or the nearest that a law knows."""
     nominal = printed.si("text.nominal_shear_rate_per_s")
     known = None if law is None else rates_of(law)
     return nominal if known is None else min(max(nominal, known[0]), known[1])
@@ -104,7 +104,7 @@ def _per_hour(law: Law) -> float:
 
 
 def in_hours(law: Law) -> tuple[FloatArray, FloatArray]:
-    """Give coefficients and their standard uncertainties of a polynomial law with time in hours."""
+    """Coefficients and their standard uncertainties of a polynomial law with time in hours."""
     powers = _per_hour(law) ** np.arange(len(law.coefficients))
     u = np.sqrt(np.maximum(np.diagonal(np.asarray(law.covariance)), 0.0))
     return np.asarray(law.coefficients) * powers, u * powers

@@ -52,7 +52,7 @@ def title_of(material: str) -> str:
 
 
 def viscosity_law(database: Database, material: str) -> Law | None:
-    """Give the law of a material's viscosity, if the database has one."""
+    """Return the law of a material's viscosity, if the database has one."""
     try:
         return database[material].law(VISCOSITY)
     except (MissingMaterial, MissingProperty):
@@ -154,7 +154,7 @@ def figure9a(axes: Axes, database: Database) -> None:
 
 
 def _first_curve(database: Database, material: str) -> tuple[np.ndarray, np.ndarray] | None:
-    """Give strain and stress of the first specimen behind the compressive modulus after cure."""
+    """Return strain and stress of the first specimen behind the compressive modulus after cure."""
     try:
         record = database[material].record("compressive_modulus", age=REFERENCE_AGE)
         curves = database.curves(material, "compression")

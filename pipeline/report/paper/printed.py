@@ -51,7 +51,7 @@ def numbers(path: str = "") -> Iterator[tuple[str, float]]:
 
 
 def part(path: str) -> Any:
-    """Give what stands at a path; positions in a list count from 0.
+    """Return what stands at a path; positions in a list count from 0.
 
     Raises
     ------
@@ -69,7 +69,7 @@ def part(path: str) -> Any:
 
 
 def value(path: str) -> float:
-    """Give one printed number in its printed unit.
+    """Return one printed number in its printed unit.
 
     Raises
     ------
@@ -79,7 +79,7 @@ def value(path: str) -> float:
 
 
 def si(path: str) -> float:
-    """Give one printed number in SI.
+    """Return one printed number in SI.
 
     Raises
     ------

@@ -62,7 +62,7 @@ def write_paper(processed: Path) -> tuple[Path, list[Entry]]:
 
 
 def collect(database: Database) -> list[Entry]:
-    """Give every printed number its row, in the order of `printed.toml`."""
+    """Return every printed number its row, in the order of `printed.toml`."""
     found = [
         *table1(),
         *table2(database),

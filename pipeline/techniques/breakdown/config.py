@@ -91,7 +91,7 @@ class BreakdownConfig(Declared):
         default=0.7,
         gt=0,
         le=1,
-        description="a start above this part of the voltage reached is flagged; a slow rise "
+        description="a start above this fraction of the voltage reached is flagged; a slow rise "
         "starts at about half of it",
     )
     register_tolerance: float = Field(
@@ -111,7 +111,7 @@ class BreakdownConfig(Declared):
     )
 
     def criteria(self) -> Criteria:
-        """Give what the search for the breakdown goes by."""
+        """Return what the search for the breakdown goes by."""
         return Criteria(
             self.amplifier_limit_V,
             self.limit_tolerance,

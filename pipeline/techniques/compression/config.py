@@ -24,16 +24,16 @@ class CompressionConfig(CurveConfig):
         default=0.8,
         gt=0,
         le=1,
-        description="a first bin less steep than this part of the steepest is a toe",
+        description="a first bin less steep than this fraction of the steepest is a toe",
     )
     contact_flag_ratio: float = Field(
         default=0.1,
         ge=0,
         le=1,
-        description="a first bin less steep than this part of the steepest has no full contact",
+        description="a first bin less steep than this fraction of the steepest has no full contact",
     )
     preload_flag_ratio: float = Field(
         default=0.1,
         gt=0,
-        description="stress of the line at zero strain, as part of its rise, that is flagged",
+        description="stress of the line at zero strain, as a fraction of its rise, that is flagged",
     )

@@ -60,7 +60,7 @@ class LoadingCurve:
 def conditions_of_test(
     specimen: Specimen, window: tuple[float, float] | None, length: Quantity
 ) -> dict[str, Condition]:
-    """Give what the test itself fixes: the window, and speed over length as nominal strain rate."""
+    """What the test itself fixes: the window, and speed over length as nominal strain rate."""
     conditions: dict[str, Condition] = {}
     if window is not None:
         conditions["window"] = window

@@ -25,7 +25,7 @@ def recorded(recording: Recording | None) -> Recording:
 
 
 def line_span(source: Source, rows: int, first: int, last: int) -> tuple[int, int]:
-    """Give the lines of the file that hold samples `first` to `last`.
+    """Return the lines of the file that hold samples `first` to `last`.
 
     Where data rows and lines do not run in step (blank lines between them), the whole span of the
     data is the only certain answer.

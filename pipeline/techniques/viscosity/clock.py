@@ -17,7 +17,7 @@ CLOCKS = ("utc_s", "local_clock_s", "time_of_day_s")
 
 
 def since_mixing_s(specimen: Specimen, recording: Recording, timezone: str) -> FloatArray:
-    """Give the time since mixing of every reading, shape (n,) `[s]`.
+    """Return the time since mixing of every reading, shape (n,) `[s]`.
 
     Stamps without an offset are the clock of the campaign's time zone, through changes to and from
     summer time; stamps without a date start at the first such time of day after mixing. Elapsed

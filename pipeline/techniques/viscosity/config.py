@@ -41,7 +41,7 @@ class ViscosityConfig(Declared):
         default=(3600.0, 43200.0), description="time since mixing over which a law is fitted"
     )
     torque_window: tuple[float, float] = Field(
-        default=(0.10, 1.0), description="part of full torque within which a reading counts"
+        default=(0.10, 1.0), description="fraction of full torque within which a reading counts"
     )
     min_readings: int = Field(default=8, ge=4, description="fewest readings a law is fitted to")
     laws: tuple[Literal["polynomial", "exponential", "power-law-to-gel"], ...] = Field(
@@ -56,12 +56,12 @@ class ViscosityConfig(Declared):
     answer_within: float | None = Field(
         default=None,
         gt=0,
-        description="expected error of viscosity at the stated times, as part of its greatest "
+        description="expected error of viscosity at stated times, as a fraction of the greatest "
         "reading, that will do: the cheapest law within it is taken; None takes the law that the "
         "data support",
     )
     reading_noise: float = Field(
-        default=0.03, gt=0, description="part of the reading, where a file states no full scale"
+        default=0.03, gt=0, description="fraction of the reading, where a file states no full scale"
     )
     stated_times_s: tuple[float, ...] = Field(
         default=(3600.0, 21600.0, 43200.0), description="times since mixing that are recorded"

@@ -69,7 +69,7 @@ def fit_flow_curve(rate_per_s: FloatArray, viscosity_Pas: FloatArray) -> FlowCur
     r"""Fit $\ln \mu = \ln K + (n - 1) \ln \dot\gamma$, and $\ln \mu$ = constant.
 
     The constant is taken where it is enough. Least squares on the logarithms, as the errors of a
-    rheometer are about a constant part of the reading.
+    rheometer are about a constant fraction of the reading.
 
     Parameters
     ----------

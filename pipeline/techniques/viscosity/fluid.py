@@ -1,7 +1,7 @@
 r"""A power-law fluid whose consistency and index change with time: one surface, and two stages.
 
 $\mu_\mathrm{app}(t, \dot\gamma) = K(t)\, \dot\gamma^{\,n(t) - 1}$ at the nominal shear rate. As
-full scale times rate is one stress for all speeds of a rotor, errors of a constant part of full
+full scale times rate is one stress for all speeds of a rotor, errors of a constant fraction of full
 scale are equal errors of the stress $\tau = \mu \dot\gamma = K \dot\gamma^n$, and that is fitted,
 weighted where a run goes on with another rotor.
 """
@@ -209,7 +209,7 @@ class Stages:
 def two_stages(swept: Sequence[tuple[Windowed, Sequence[Sweep]]], per_s_per_rpm: float) -> Stages:
     """Fit ln mu against ln rate in each sweep, then K and n against time.
 
-    Weights are those of the error model: a constant part of full scale is an error of ln mu in
+    Weights are those of the error model: a constant fraction of full scale is an error of ln mu in
     inverse proportion to the torque.
     """
     times, ks, ns, u_ks, u_ns = [], [], [], [], []

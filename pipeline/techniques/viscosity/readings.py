@@ -124,7 +124,7 @@ def audited(
     readings = Readings(
         time_s, viscosity, machine.torque_noise * full, machine.u_torque_calibration * full, speed,
         rotor, line,
-        f"errors a constant part of full scale ({machine.torque_noise:.2%} noise of a reading, "
+        f"errors a constant fraction of full scale ({machine.torque_noise:.2%} noise of a reading, "
         f"{machine.u_torque_calibration:.2%} calibration, shared)",
     )  # fmt: skip
     torque = viscosity / full
@@ -159,7 +159,7 @@ def _stuck(viscosity: FloatArray) -> NDArray[np.bool_]:
     """Find an over-range display that shows a plausible number: the greatest one, repeated.
 
     A liquid that rose by several steps of the display until then does not stop from one reading
-    to the next; one that levels off, or is constant, is left alone.
+    to the next; one that levels off, or is constant, is ignored.
     """
     none = np.zeros(len(viscosity), dtype=bool)
     top: NDArray[np.bool_] = viscosity == viscosity.max()
@@ -180,7 +180,7 @@ def _of_reading(
     zeros = np.zeros(len(viscosity))
     return Readings(
         time_s, viscosity, config.reading_noise * np.abs(viscosity), zeros, zeros, zeros, line,
-        "errors a constant part of the reading: the file states no rotor and speed",
+        "errors a constant fraction of the reading: the file states no rotor and speed",
     )  # fmt: skip
 
 

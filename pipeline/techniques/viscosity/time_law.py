@@ -49,7 +49,7 @@ class TimeLaw:
     rate_per_rpm_per_s: float | None = None
 
     def at(self, time_s: float) -> tuple[float, FloatArray]:
-        """Give viscosity and its derivatives by coefficient, at the usual rate if there is one.
+        """Return viscosity and its derivatives by coefficient, at the usual rate if there is one.
 
         Raises
         ------

@@ -99,7 +99,7 @@ def _part(law: TimeLaw, key: str, time_s: float) -> Answer:
 
 
 def fluid_part(law: TimeLaw, key: str, time_s: float) -> tuple[float, FloatArray]:
-    r"""Give K, n or $K_w = K n^n$ at a time, with derivatives by the coefficients of the law.
+    r"""Return K, n or $K_w = K n^n$ at a time, with derivatives by the coefficients of the law.
 
     The rate at a spindle in a wide cup is $2 \omega / n$; with $2 \omega$ in its place n comes out
     right and K too large by $n^{-n}$.

@@ -109,7 +109,7 @@ def combined(windows: Sequence[Windowed]) -> Readings:
 
 
 def common_range(ranges: Sequence[tuple[float, float]]) -> tuple[float, float]:
-    """Give the times that all ranges have in common `[s]`.
+    """Return the times that all ranges have in common `[s]`.
 
     Raises
     ------

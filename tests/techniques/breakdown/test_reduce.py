@@ -1,4 +1,4 @@
-"""Promises of the breakdown room for one specimen: fields, censoring, refusals and their mends."""
+"""Promises of the breakdown room for one specimen: fields, censoring, refusals and their hints."""
 
 from __future__ import annotations
 
