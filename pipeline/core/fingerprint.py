@@ -235,7 +235,7 @@ def _packages() -> Mapping[str, list[str]]:
 
 @cache
 def _installed(name: str) -> tuple[str, tuple[str, ...]]:
-    """Give the version of a distribution and the names of what it requires without extras."""
+    """Return the version of a distribution and the names of what it requires without extras."""
     from importlib import metadata
 
     try:

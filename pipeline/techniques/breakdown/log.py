@@ -75,7 +75,7 @@ def seen_in_log(specimen: Specimen, recording: Recording, config: BreakdownConfi
 def _signals(
     recording: Recording, config: BreakdownConfig
 ) -> tuple[FloatArray, FloatArray, FloatArray | None]:
-    """Give time, voltage and current of a ramp, the polarity made positive."""
+    """Return time, voltage and current of a ramp, the polarity made positive."""
     columns = recording.columns
     for name in ("time_s", "voltage_V"):
         if name not in columns:
