@@ -126,9 +126,9 @@ def _ask_one(curve: Curve) -> Told:
     flags = [frozenset[str](), frozenset[str]()]
     for value in measured.values:
         k = (MODULUS, COMPENSATED).index(value.key)
-        dof = float(value.diagnostics["degrees_of_freedom"])
-        half = coverage_factor(dof) * value.quantity.standard_uncertainty
-        low[k], high[k] = value.quantity.value - half, value.quantity.value + half
+        q = value.quantity
+        half = coverage_factor(value.degrees_of_freedom) * q.standard_uncertainty
+        low[k], high[k] = q.value - half, q.value + half
         flags[k] = frozenset(flag.name for flag in value.flags)
     return Told(low, high, tuple(flags))
 

@@ -16,6 +16,7 @@ class PropertyKey:
     key, symbol, unit : name in cards, symbol in figures, SI unit
     plausible : lowest and highest value of a soft elastomer `[unit]`; outside it a value is flagged
     standard : the test standard or article that defines it
+    is_modulus : it is a stiffness of the material, which moduli of other tests are compared with
     """
 
     key: str
@@ -23,28 +24,40 @@ class PropertyKey:
     unit: str
     plausible: tuple[float, float]
     standard: str
+    is_modulus: bool = False
 
 
 _TABLE = (
-    PropertyKey("compressive_modulus", "Y_c", "Pa", (1e3, 1e8), "ASTM D575, slope over 0-5 %"),
+    PropertyKey(
+        "compressive_modulus",
+        "Y_c",
+        "Pa",
+        (1e3, 1e8),
+        "ASTM D575, slope over 0-5 %",
+        is_modulus=True,
+    ),
     PropertyKey(
         "compressive_modulus_toe_compensated",
         "Y_c,toe",
         "Pa",
         (1e3, 1e8),
         "ASTM D638 annex A1, tangent to zero stress",
+        is_modulus=True,
     ),
-    PropertyKey("tensile_modulus", "Y_t", "Pa", (1e3, 1e8), "ASTM D412, slope over 0-1 %"),
+    PropertyKey(
+        "tensile_modulus", "Y_t", "Pa", (1e3, 1e8), "ASTM D412, slope over 0-1 %", is_modulus=True
+    ),
     PropertyKey(
         "tensile_modulus_toe_compensated",
         "Y_t,toe",
         "Pa",
         (1e3, 1e8),
         "ASTM D638 annex A1, counted from where the strip is taut",
+        is_modulus=True,
     ),
     PropertyKey("tensile_strength", "sigma_b", "Pa", (1e3, 1e8), "ASTM D412"),
     PropertyKey("elongation_at_break", "eps_b", "1", (0.05, 30.0), "ASTM D412"),
-    PropertyKey("indentation_modulus", "Y_i", "Pa", (1e3, 1e9), "ISO 14577-1"),
+    PropertyKey("indentation_modulus", "Y_i", "Pa", (1e3, 1e9), "ISO 14577-1", is_modulus=True),
     PropertyKey("relative_permittivity", "eps_r", "1", (1.5, 100.0), "ASTM D150"),
     PropertyKey("loss_tangent", "tan delta", "1", (0.0, 1.0), "ASTM D150"),
     PropertyKey("breakdown_strength", "E_b", "V/m", (1e6, 1e9), "D149-style DC ramp, IEC 62539"),

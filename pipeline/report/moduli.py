@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from deamat.core.properties import PROPERTIES, REFERENCE_AGE
 from deamat.core.records import Condition, PropertyRecord, Refusal
 
-_MODULI = tuple(p.key for p in PROPERTIES.values() if p.unit == "Pa" and "modulus" in p.key)
+_MODULI = tuple(p.key for p in PROPERTIES.values() if p.is_modulus)
 
 
 @dataclass(frozen=True, slots=True)
