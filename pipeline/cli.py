@@ -194,8 +194,12 @@ def paper(raw: Path | None, config: Path | None, processed: Path | None, as_json
 @click.option("--electrode", help="electrode of config/designs.toml")
 @click.option("--t-de", metavar="LENGTH", help="thickness of the film, with its unit: 500um")
 @click.option("--t-passive", metavar="LENGTH", help="[default: the one that bends most]")
-@click.option("--voltage", metavar="VOLTAGE", help="6.4kV [default: the highest allowed one]")
-@click.option("--probability", type=float, help="allowed part of the films that break down, 0 to 1")
+@click.option(
+    "--voltage", metavar="VOLTAGE", help="drive voltage, e.g. 6.4kV [default: highest allowed]"
+)
+@click.option(
+    "--probability", type=float, help="accepted fraction of films that break down, 0 to 1"
+)
 @click.option(
     "--where", "-w", multiple=True, metavar="KEY=VALUE", help="a condition: age='2 months'"
 )
@@ -206,8 +210,8 @@ def paper(raw: Path | None, config: Path | None, processed: Path | None, as_json
     type=click.Path(dir_okay=False, path_type=Path),
     help="a card's file; with any, the database is not asked",
 )
-@click.option("--compare", is_flag=True, help="compare all compositions as well")
-@click.option("--pareto", is_flag=True, help="list what no other design beats as well")
+@click.option("--compare", is_flag=True, help="also compare all compositions")
+@click.option("--pareto", is_flag=True, help="list non-dominated designs (Pareto front) as well")
 @click.option(
     "--figures", type=click.Path(file_okay=False, path_type=Path), help="draw into this folder"
 )

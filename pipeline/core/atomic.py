@@ -109,7 +109,7 @@ def whole_folder(place: Path) -> Iterator[Path]:
     ConfigError : something that is not such a link stands at `place`
     """
     if place.exists() and not place.is_symlink():
-        raise ConfigError(f"{place} is no link of this program; move it away and try again")
+        raise ConfigError(f"{place} is not a link made by this program; move it away and try again")
     place.parent.mkdir(parents=True, exist_ok=True)
     slots = [place.with_name(f".{place.name}-{side}") for side in ("a", "b")]
     old = slots[0] if place.is_symlink() and place.readlink() == Path(slots[0].name) else slots[1]

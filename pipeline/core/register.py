@@ -237,7 +237,7 @@ class _Rows:
         line = specimen.line
         first = seen.setdefault(specimen.id.casefold(), line)
         if first != line:
-            reason = f"the specimen stands in line {first} already"
+            reason = f"duplicate specimen: it is already in line {first}"
             raise RawFileError(self.path, reason, line, 1, specimen.id)
         for name in ("material", *CONDITION_COLUMNS):
             text = specimen.material if name == "material" else specimen.conditions.get(name)
@@ -247,7 +247,7 @@ class _Rows:
             if other := spellings.other(kind, text, f"{self.path}, line {line}"):
                 hint = "write it as there: names that differ only in case or spaces are one name"
                 at = self.header.index(name) + 1
-                reason = f"{name} is spelt otherwise: {other}"
+                reason = f"{name} is spelled differently: {other}"
                 raise RawFileError(self.path, reason, line, at, text, hint)
             self.sound.add((name, text))
 

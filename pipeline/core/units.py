@@ -132,11 +132,11 @@ def si_factor(unit: str) -> tuple[str, float, float]:
     ------
     UnknownUnit : the unit is not in the table; the message names the nearest ones
     """
-    spelt = unit.strip().translate(_SPELLINGS)
+    spelled = unit.strip().translate(_SPELLINGS)
     try:
-        return UNITS[spelt]
+        return UNITS[spelled]
     except KeyError:
-        near = difflib.get_close_matches(spelt, UNITS, n=3) or sorted(UNITS)
+        near = difflib.get_close_matches(spelled, UNITS, n=3) or sorted(UNITS)
         raise UnknownUnit(
             f"unknown unit {unit!r}; known units near it: {', '.join(near)}"
         ) from None

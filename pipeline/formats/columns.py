@@ -93,7 +93,7 @@ def _refuse_twins(layout: Layout, names: tuple[str, ...]) -> None:
         twin = next(column for column, name in enumerate(names) if name in names[:column])
         raise RawFileError(
             "",
-            "two columns have the same label",
+            "duplicate column: two columns have the same label",
             line=layout.names + 1,
             column=twin + 1,
             value=layout.labels[twin],

@@ -66,12 +66,12 @@ def _read(file: RawFile) -> Recording:
     layout = required(_layout(file.head), file.head, _READER.name, file.path)
     if file.encoding != "latin-1":
         return read_table(file, layout, _READER, {})
-    spelt = tuple(unit.translate(_MAC_ROMAN) for unit in layout.units)
-    recording = read_table(file, replace(layout, units=spelt), _READER, {})
-    if spelt == layout.units:
+    spelled = tuple(unit.translate(_MAC_ROMAN) for unit in layout.units)
+    recording = read_table(file, replace(layout, units=spelled), _READER, {})
+    if spelled == layout.units:
         return recording
-    told = ", ".join(unit for unit in spelt if unit)
-    flag = Flag("mac-roman", f"units spelt in Mac OS Roman, taken for {told}")
+    told = ", ".join(unit for unit in spelled if unit)
+    flag = Flag("mac-roman", f"units in Mac OS Roman encoding, read as {told}")
     return replace(recording, flags=(*recording.flags, flag))
 
 

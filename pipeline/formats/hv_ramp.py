@@ -51,7 +51,7 @@ _NAME = "hv_ramp"
 _CHANNEL_LABEL = re.compile(r"ch(\d+)")
 _CHANNEL_LINE = re.compile(r"#\s*channel\s+(\d+)\s*:\s*(.*?)\s*", re.IGNORECASE)
 _MONITOR = re.compile(r"(voltage|current) monitor\s*,\s*(\S+)\s+([a-z]+)\s*/\s*V", re.IGNORECASE)
-_MEND = "say it above the labels: `# channel 1: voltage monitor, 2000 V/V`"
+_MEND = "declare it above the labels: `# channel 1: voltage monitor, 2000 V/V`"
 _SI = {"voltage": "V", "current": "A"}
 
 
@@ -126,7 +126,7 @@ def _monitors(file: RawFile, layout: Layout) -> dict[str, _Monitor]:
         key = f"ch{int(channel[1])}"
         if key not in said:
             raise RawFileError(
-                file.path, "a channel of which the file does not say what it measures",
+                file.path, "a channel for which the file does not say what it measures",
                 line=layout.names + 1, column=column, value=label, hint=_MEND,
             )  # fmt: skip
         monitors[label] = _monitor(file, *said[key])

@@ -153,7 +153,7 @@ def _with_row(
         if unit is not None and si_factor(unit) != si_factor(below):
             raise RawFileError(
                 file.path, f"the label says {unit}, the row of units below says otherwise",
-                line=at + 1, column=column, value=below, hint="say each unit once",
+                line=at + 1, column=column, value=below, hint="state each unit once",
             )  # fmt: skip
         result.append((stem, unit or below))
     return result

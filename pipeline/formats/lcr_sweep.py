@@ -281,6 +281,6 @@ def _over_range_flag(over: Iterable[np.bool_], frequency_Hz: FloatArray, first_l
     more = f" and {found.size - _MOST_LINES_NAMED} more" if found.size > _MOST_LINES_NAMED else ""
     return Flag(
         "over-range",
-        f"{found.size} of {frequency_Hz.size} points are no measurements by the meter's own word "
+        f"{found.size} of {frequency_Hz.size} points are marked as invalid by the meter "
         f"and are not used: {named}{more}",
     )

@@ -175,7 +175,7 @@ def clock_column(file: RawFile, stamps: Sequence[tuple[int, str]]) -> tuple[str,
     line, first = stamps[0]
     if len(stamps) > 1 and all(text == first for _, text in stamps):
         raise RawFileError(
-            file.path, f"all {len(stamps)} readings bear one stamp: it tells when the log began, "
+            file.path, f"all {len(stamps)} readings have one time stamp: the start of the log, "
             "not when each was taken", line, 1, first,
             "stamp every reading, or log the elapsed time as time_s",
         )  # fmt: skip

@@ -109,7 +109,7 @@ class MaterialCard:
         if record.bound == "lower":
             raise MissingProperty(
                 f"{key} of {self.material} is only known to be {readable_record(record)}; "
-                f"card.record({key!r}) tells the bound"
+                f"card.record({key!r}) returns the bound"
             )
         return record.quantity
 
@@ -252,7 +252,7 @@ def _in_order(entries: Iterable[E]) -> tuple[E, ...]:
     named = sorted(((_identity(entry), entry) for entry in entries), key=itemgetter(0))
     for (one, _), (other, _) in pairwise(named):
         if one == other:
-            raise CardError(f"two entries that nothing tells apart: {' '.join(one)}")
+            raise CardError(f"two entries that cannot be distinguished: {' '.join(one)}")
     return tuple(entry for _, entry in named)
 
 

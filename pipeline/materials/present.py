@@ -28,7 +28,7 @@ _HEADINGS = ("property", "symbol", "value", "95 % interval", "n", "conditions", 
 def card_text(card: MaterialCard) -> str:
     """Write a card for people: what is known, under which conditions, and what was refused.
 
-    What all values have in common is told once; flags are numbered by name, each with its first
+    What all values have in common is stated once; flags are numbered by name, each with its first
     detail (`trace` tells those of one value in full).
     """
     card = card.canonical()

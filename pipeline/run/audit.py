@@ -43,7 +43,7 @@ def audit(folders: Folders) -> dict[str, Any]:
 
 
 def audit_text(document: dict[str, Any]) -> str:
-    """Write the account as a page: what is amiss in full, what is well in counts."""
+    """Write the account as a page: what is wrong in full, what is right in counts."""
     entries = [FileEntry(**e) for e in document["files"]]
     counts = Counter((e.path.partition("/")[0], e.role, e.status) for e in entries)
     lines = [f"release {document['release']}: {len(entries)} files, each accounted for once", ""]
@@ -55,7 +55,7 @@ def audit_text(document: dict[str, Any]) -> str:
         ("rejected", [e for e in entries if e.status == "rejected"]),
         ("refused", [e for e in entries if e.status == "refused"]),
         ("excluded", [e for e in entries if e.status == "excluded"]),
-        ("not as registered", [e for e in entries if e.manifest != "ok"]),
+        ("differs from the manifest", [e for e in entries if e.manifest != "ok"]),
     ):
         if wanted:
             lines += ["", f"{title}:", *(f"  {_line(e)}" for e in wanted)]

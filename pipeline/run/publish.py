@@ -55,7 +55,7 @@ class Press:
         if fresh:
             if self.release.keep(*names):
                 return key_of(parts)
-            self.bench.book.redone.append(Redo(stage, subject, "its output is not as it was"))
+            self.bench.book.redone.append(Redo(stage, subject, "its output was changed"))
         failures = attempt(stage, subject, rests_on, partial(write, self.release))
         if isinstance(failures, Failure):
             self.release.drop(*names)

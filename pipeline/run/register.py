@@ -55,7 +55,7 @@ def register(raw: Path, campaign: str, accept: bool) -> Registration:
         f"changed  {name}: {old[name][:12]} -> {found[name][:12]}" for name in difference.changed
     ]
     if not lines:
-        return Registration(f"{campaign}: {len(found)} files, all as registered", False)
+        return Registration(f"{campaign}: {len(found)} files, all as in the manifest", False)
     if (difference.changed or difference.missing) and not accept:
         lines.append(
             f"{campaign}: nothing written; if these changes are right, say "

@@ -60,7 +60,7 @@ def survey(
     for path in sizes:
         result.entries[path] = _entry(path, sizes[path], hashes[path], difference, techniques)
     if broken:
-        _blame(result, broken)
+        _reject(result, broken)
     for name in difference.missing:
         path = f"{folder.name}/{name}"
         if path not in result.entries:
@@ -75,7 +75,7 @@ def survey(
             raise RawFileError(f"{folder.name}/{CAMPAIGN_FILE}", reason)
         result.campaign = campaign
     except RawFileError as error:
-        _blame(result, error)
+        _reject(result, error)
         for path, entry in result.entries.items():
             if entry.role not in ("campaign", "missing"):
                 why = f"{folder.name}/{CAMPAIGN_FILE} cannot be read"
@@ -168,7 +168,7 @@ def _exclude(result: Survey, config: Config) -> None:
             )
 
 
-def _blame(result: Survey, error: RawFileError) -> None:
+def _reject(result: Survey, error: RawFileError) -> None:
     """Mark a file as rejected, with the place and reason of an error."""
     result.entries[error.path] = result.entries[error.path].rejected(error)
 
@@ -205,7 +205,7 @@ def _register(
             form, spellings,
         )  # fmt: skip
     except RawFileError as error:
-        _blame(result, error)
+        _reject(result, error)
         for file in _files_named(data, path):
             if file in result.entries:
                 result.entries[file] = replace(
@@ -221,7 +221,7 @@ def _register(
                 result.specimens.append(specimen)
         except RawFileError as error:
             slips.append((None, error))
-    _blame_rows(path, slips, owners, result)
+    _reject_rows(path, slips, owners, result)
 
 
 def _claim(specimen: Specimen, result: Survey, owners: dict[str, Specimen]) -> bool:
@@ -254,7 +254,7 @@ def _claim(specimen: Specimen, result: Survey, owners: dict[str, Specimen]) -> b
     return entry.status != "excluded"
 
 
-def _blame_rows(
+def _reject_rows(
     register: str,
     slips: Sequence[tuple[str | None, RawFileError]],
     owners: Mapping[str, Specimen],

@@ -91,7 +91,7 @@ def test_a_header_that_cannot_be_used(old: str, new: str, message: str) -> None:
 
 def test_a_specimen_stands_once() -> None:
     register = _read(_GOOD + _GOOD.splitlines()[1] + "\n")
-    assert "the specimen stands in line 2 already" in str(register.errors[0][1])
+    assert "duplicate specimen: it is already in line 2" in str(register.errors[0][1])
 
 
 def test_multi_word_units_and_temperatures() -> None:
@@ -146,7 +146,7 @@ def test_a_row_may_be_an_observation_named_by_its_cells() -> None:
         ("m,a,22,1,2,,", "line 3, column 6: no defect (found '')"),
         (
             "m,a,22,0.5,1,gap,",
-            "line 3, column 1: the specimen stands in line 2 already (found 'm a 22 0.5 1')",
+            "line 3, column 1: duplicate specimen: it is already in line 2 (found 'm a 22 0.5 1')",
         ),
     ],
 )
@@ -234,9 +234,9 @@ def test_names_that_differ_only_in_case_are_one_name() -> None:
     register = _read("\n".join([_GOOD.splitlines()[0], *rows, ""]))
     assert [s.id for s in register.specimens] == ["a", "c"]
     assert [(e.line, e.column, e.reason) for _, e in register.errors] == [
-        (3, 1, "the specimen stands in line 2 already"),
-        (5, 2, f"material is spelt otherwise: 'm-5K' in {_PATH}, line 4"),
-        (6, 7, f"age is spelt otherwise: 'after cure' in {_PATH}, line 2"),
+        (3, 1, "duplicate specimen: it is already in line 2"),
+        (5, 2, f"material is spelled differently: 'm-5K' in {_PATH}, line 4"),
+        (6, 7, f"age is spelled differently: 'after cure' in {_PATH}, line 2"),
     ]
 
 

@@ -57,7 +57,7 @@ def test_channels_go_by_their_number_and_their_unit() -> None:
     assert recording.metadata["operator"] == "nobody"
 
 
-MEND = "say it above the labels: `# channel 1: voltage monitor, 2000 V/V`"
+MEND = "declare it above the labels: `# channel 1: voltage monitor, 2000 V/V`"
 
 
 @pytest.mark.parametrize(
@@ -65,12 +65,12 @@ MEND = "say it above the labels: `# channel 1: voltage monitor, 2000 V/V`"
     [
         (
             ["time_s,ch1_V", "0,1"],
-            "r.csv, line 1, column 2: a channel of which the file does not say what it measures "
+            "r.csv, line 1, column 2: a channel for which the file does not say what it measures "
             f"(found 'ch1'); {MEND}",
         ),
         (
             [VOLTAGE, "time_s,ch1_V,ch2_V", "0,1,1"],
-            "r.csv, line 2, column 3: a channel of which the file does not say what it measures "
+            "r.csv, line 2, column 3: a channel for which the file does not say what it measures "
             f"(found 'ch2'); {MEND}",
         ),
         (

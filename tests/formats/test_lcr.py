@@ -41,7 +41,7 @@ def test_a_log_of_replies_comes_out_in_si_with_its_lines() -> None:
     assert (source.first_line, source.last_line) == (6, 10)
     assert source.reader == "lcr6000"
     assert [str(flag) for flag in recording.flags] == [
-        "over-range: 2 of 5 points are no measurements by the meter's own word and are not used: line 8 (100 Hz), line 10 (10000 Hz)"
+        "over-range: 2 of 5 points are marked as invalid by the meter and are not used: line 8 (100 Hz), line 10 (10000 Hz)"
     ]
 
 
@@ -209,7 +209,7 @@ NO_FUNCTION = "x, line 1: the file does not say which function the meter measure
         (CSV.replace(b"Cs_F", b"Cs_ohm"), "x, line 3, column 2: a column in ohm, where a unit of F belongs (found 'Cs'); name the column Cs_F"),
         (CSV.replace(b"Cs_F,D", b"Cs_F,Q"), "x, line 3, column 2: not a pair that gives a permittivity (found 'Cs,Q'); known pairs: Z,theta; Cp,D; Cp,Rp; Cs,D; Cs,Rs; R,X"),
         (CSV.replace(b"Cs_F,D", b"Cs_F,D,note"), "x, line 3: 4 columns of numbers (found 'frequency, Cs, D, note'); a sweep is frequency and one pair, such as frequency_Hz,Cp_F,D"),
-        (CSV.replace(b"Cs_F,D\n", b"Cs_F,D\nHz,pF,1\n"), "x, line 4, column 2: the label says F, the row of units below says otherwise (found 'pF'); say each unit once"),
+        (CSV.replace(b"Cs_F,D\n", b"Cs_F,D\nHz,pF,1\n"), "x, line 4, column 2: the label says F, the row of units below says otherwise (found 'pF'); state each unit once"),
         (CSV.replace(b"20,", b"20;"), "x, line 5, column 2: too few fields: 2 where the header names 3 (found '0.00101')"),
         (E4980A.replace(b",+3", b",+7"), "x, line 9, column 4: an unknown status (found '+7'); known: 0, +0, -1, 1, +1, 3, +3, 4, +4"),
         (E4980A.replace(b"RX", b"VDID"), "x, line 2: a function that gives no permittivity (found 'VDID')"),

@@ -112,7 +112,7 @@ def test_a_column_without_a_unit_is_refused() -> None:
 
 def test_two_columns_of_one_label_are_refused() -> None:
     assert refused("Time (s),Load (N),load (kN)", "0,1,2") == (
-        "x.csv, line 1, column 3: two columns have the same label (found 'load'); "
+        "x.csv, line 1, column 3: duplicate column: two columns have the same label (found 'load'); "
         "export each quantity once"
     )
 

@@ -204,7 +204,7 @@ SEEN = (
                  "time_h,timestamp,viscosity_mPas"), "viscosity", STAMPED, values=VISCOSITIES),
     Trap("a start stamp repeated while the clock is elapsed seconds", "the stamp alone",
          "".join(f"2022-03-01T20:30:00\t{reading(h)}\n" for h in HOURS),
-         rejected="x, line 1, column 1: all 25 readings bear one stamp: it tells when the log began, "
+         rejected="x, line 1, column 1: all 25 readings have one time stamp: the start of the log, "
          "not when each was taken (found '2022-03-01T20:30:00'); stamp every reading, or log the "
          "elapsed time as time_s"),
     Trap("sampling interval and method changing mid-run", "2 s, then 10 s and another viscosity",

@@ -140,7 +140,9 @@ def test_a_card_keeps_to_one_material() -> None:
 
 
 def test_two_records_that_nothing_tells_apart_are_an_error() -> None:
-    with pytest.raises(CardError, match="two entries that nothing tells apart: compressive_mod"):
+    with pytest.raises(
+        CardError, match="two entries that cannot be distinguished: compressive_mod"
+    ):
         card(records=(modulus(), modulus(n=3))).canonical()
 
 

@@ -158,7 +158,7 @@ def test_names_that_differ_only_in_case_are_one_name_over_campaigns_too(tmp_path
     reasons = [{path: e.reason for path, e in one.entries.items() if e.reason} for one in seen]
     assert "differs only in case: 'drift-5K' in raw/" in reasons[1]["drift-5k/campaign.toml"]
     assert (
-        "material is spelt otherwise: 'm-5K' in drift-5K/compression/specimens.csv, line 2"
+        "material is spelled differently: 'm-5K' in drift-5K/compression/specimens.csv, line 2"
         in (reasons[2]["third/compression/specimens.csv"])
     )
     assert [len(one.specimens) for one in seen] == [1, 0, 0]

@@ -166,7 +166,7 @@ def test_a_deleted_output_is_made_again(folders: Folders) -> None:
     card = folders.processed / "cards" / f"{_SOFT}.json"
     before = card.read_bytes()
     card.unlink()
-    assert set(run(folders)["redone"]) == {f"card {_SOFT}: its output is not as it was"}
+    assert set(run(folders)["redone"]) == {f"card {_SOFT}: its output was changed"}
     assert card.read_bytes() == before
 
 

@@ -215,7 +215,7 @@ def test_an_over_range_point_is_marked_and_named(quirk: Quirk) -> None:
     recording = read(LOG, quirk)
     assert list(np.flatnonzero(recording.columns["over_range"])) == [10]
     assert [str(flag) for flag in recording.flags] == [
-        "over-range: 1 of 31 points are no measurements by the meter's own word and are not used: line 16 (100 Hz)"
+        "over-range: 1 of 31 points are marked as invalid by the meter and are not used: line 16 (100 Hz)"
     ]
 
 

@@ -1,4 +1,4 @@
-"""Polynomials by least squares: fitted and evaluated in a Chebyshev basis, told as raw ones."""
+"""Polynomials by least squares: fitted and evaluated in a Chebyshev basis, reported as raw ones."""
 
 from __future__ import annotations
 

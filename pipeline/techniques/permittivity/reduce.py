@@ -133,7 +133,7 @@ def _card_position(spectrum: Spectrum, config: PermittivityConfig) -> Position:
     lost = spectrum.lost_Hz[np.abs(spectrum.lost_Hz / card - 1.0) <= tolerance]
     if lost.size and np.abs(spectrum.frequency_Hz / card - 1.0).min() > tolerance:
         raise FitRefused(
-            f"the point at {lost[0]:g} Hz is over-range by the meter's own word; choose a range "
+            f"the point at {lost[0]:g} Hz is marked over-range by the meter; choose a range "
             "that holds the film's impedance there, or a larger film",
             {"points": int(spectrum.frequency_Hz.size)},
         )

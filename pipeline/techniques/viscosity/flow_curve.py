@@ -183,8 +183,8 @@ def _value(
         key,
         Quantity.from_budget(value, property_key(key).unit, budget),
         budget,
-        f"{curve.law} by least squares on ln viscosity against ln rate, errors a constant part of "
-        f"the reading; {curve.reason}",
+        f"{curve.law} by least squares on ln viscosity against ln rate, errors a constant "
+        f"fraction of the reading; {curve.reason}",
         conditions,
         lines,
         diagnostics=curve.diagnostics,

@@ -1,4 +1,4 @@
-"""What a situation of a laboratory is: files with something amiss, and the right answer to them."""
+"""What a situation of a laboratory is: files with a fault, and the right answer to them."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Situation:
     severity : what is varied, with its unit
     severities : three of them, which shift the naive value by about 3, 10 and 30 %; fewer where
         the situation has no such degrees
-    make : a severity (0: nothing amiss) to a material
+    make : a severity (0: no fault) to a material
     undetectable : severity to the reason why the data cannot show it, for cells known to be silent
     """
 

@@ -233,7 +233,7 @@ def test_without_a_database_nothing_is_written(tmp_path: Path) -> None:
 def test_a_folder_that_is_not_ours_is_ignored(tmp_path: Path) -> None:
     database(tmp_path)
     (tmp_path / "paper").mkdir()
-    with pytest.raises(ConfigError, match="is no link of this program; move it away"):
+    with pytest.raises(ConfigError, match="is not a link made by this program; move it away"):
         write_paper(tmp_path)
 
 

@@ -44,7 +44,7 @@ def test_an_over_range_point_at_the_cards_frequency_is_not_replaced(
     at = int(np.argmin(np.abs(frequency_Hz - 10.0)))
     measured = reduce(recording(capacitor(2.63), frequency_Hz=frequency_Hz, over_range=(at,)))
     assert refused(measured) == (
-        "the point at 10 Hz is over-range by the meter's own word; choose a range that holds the film's impedance there, or a larger film"
+        "the point at 10 Hz is marked over-range by the meter; choose a range that holds the film's impedance there, or a larger film"
     )
 
 
