@@ -208,7 +208,7 @@ class Database(Mapping[str, MaterialCard]):
 
     def _missing(self, material: str) -> str:
         held = list(self)
-        near = difflib.get_close_matches(material, held, n=3)
+        near = difflib.get_close_matches(material, held)
         more = f" and {len(held) - _SHOWN} more" if len(held) > _SHOWN else ""
         hint = (
             f"nearest: {', '.join(near)}" if near else f"it holds {', '.join(held[:_SHOWN])}{more}"

@@ -39,8 +39,7 @@ def choose(entries: Sequence[E], what: str, asked: Asked) -> E:
     left = [e for e in entries if all(_meets(e, name, asked[name]) for name in asked)]
     if not left:
         raise MissingProperty(f"no {what} with {_said(asked)}", f"there is {_choices(entries)}")
-    if len(left) > 1 and "age" not in asked:
-        left = [e for e in left if _stated(e, "age") == REFERENCE_AGE] or left
+    left = [e for e in left if _stated(e, "age") == REFERENCE_AGE] or left
     if len(left) > 1:
         raise MissingProperty(f"{len(left)} records of {what}; choose {_choices(left, brief=True)}")
     return left[0]

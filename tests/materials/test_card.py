@@ -13,6 +13,7 @@ from deamat.core.errors import CardError, MissingProperty
 from deamat.core.quantity import Quantity
 from deamat.core.records import Flag
 from deamat.materials.card import MaterialCard, read_card
+from deamat.materials.document import canonical_json
 from tests.materials import samples
 from tests.materials.samples import aged, card, modulus, refusal, viscosity_law
 
@@ -163,6 +164,10 @@ def test_an_interval_that_is_none_is_an_error() -> None:
         card(records=(modulus(ci95=(2.0, 1.0)),)).to_document()
     with pytest.raises(CardError, match="is no interval"):
         card(records=(modulus(ci95=(1.0, float("nan"))),)).to_document()
+    for limits in ((math.inf, math.inf), (-math.inf, -math.inf)):
+        with pytest.raises(CardError, match="is no interval"):
+            card(records=(modulus(ci95=limits),)).to_document()
+    card(records=(modulus(ci95=(-math.inf, math.inf)),)).to_document()
 
 
 def test_a_card_cannot_hide_a_synthetic_campaign() -> None:
@@ -183,6 +188,16 @@ def test_the_order_of_the_inputs_plays_no_part() -> None:
     )
     other = replace(one, records=(aged(), turned), refusals=one.refusals[::-1])
     assert other.to_json() == one.to_json()
+
+
+def test_lines_of_one_file_that_the_register_names_together_stand_in_order() -> None:
+    runs = [samples.origin("A1", 158212.5, 2, first_line=line) for line in (None, 12, 100)]
+    found = card(records=(modulus(origins=(runs[2], runs[0], runs[1])),)).canonical()
+    assert [origin.first_line for origin in found.records[0].origins] == [None, 12, 100]
+
+
+def test_a_card_is_read_as_it_is_written() -> None:
+    assert "Gel µ 10:1".encode() in replace(card(), name="Gel µ 10:1").to_json()
 
 
 def test_the_release_speaks_of_the_content_alone() -> None:
@@ -269,6 +284,12 @@ def test_an_entry_that_does_not_fit_is_named_by_its_place(
     document["release"] = str(caught.value).split()[6].rstrip(",")  # as a forger would
     with pytest.raises(CardError, match=message):
         MaterialCard.from_document(document)
+
+
+def test_what_json_cannot_say_is_never_written() -> None:
+    for number in (math.nan, math.inf):
+        with pytest.raises(ValueError, match="not JSON compliant"):
+            canonical_json({"value": number})
 
 
 def test_a_lower_bound_is_never_given_as_a_bare_number() -> None:

@@ -93,6 +93,21 @@ def test_a_technique_is_read_across_materials(path: Path) -> None:
     assert data["nominal_stress_Pa"].values.tolist() == [0.0, 10.0, 20.5, 1.0, 30.0, 7.0]
 
 
+def test_a_column_of_zeros_is_a_column(tmp_path: Path) -> None:
+    path = tmp_path / "zeros.h5"
+    still = measurement("A1", {"nominal_strain": [0.0, 0.1], "nominal_stress_Pa": [0.0, 0.0]})
+    write_curves(path, [still], synthetic_campaigns=())
+    assert read_curves(path)["nominal_stress_Pa"].values.tolist() == [0.0, 0.0]
+
+
+def test_whoever_holds_the_file_of_an_older_release_keeps_it(path: Path) -> None:
+    kept = path.with_name("kept.h5")
+    kept.hardlink_to(path)
+    before = kept.read_bytes()
+    write_curves(path, [A2], synthetic_campaigns=())
+    assert kept.read_bytes() == before != path.read_bytes()
+
+
 def test_simulated_curves_are_marked(path: Path) -> None:
     assert read_curves(path)["synthetic"].values.tolist() == [False, False, False, True]
     with h5py.File(path) as file:

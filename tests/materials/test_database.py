@@ -180,6 +180,20 @@ def test_an_unknown_material_names_the_nearest(path: Path) -> None:
             db["steel"]
 
 
+@pytest.mark.parametrize(("held", "more"), [(8, ""), (9, " and 1 more")])
+def test_eight_materials_are_named_and_the_rest_counted(
+    tmp_path: Path, held: int, more: str
+) -> None:
+    names = [f"gel-{number}" for number in range(held)]
+    cards = [MaterialCard(name, name, False, records=()) for name in names]
+    write_database(tmp_path / "materials.sqlite", cards, (), PROVENANCE)
+    with (
+        open_database(tmp_path) as db,
+        pytest.raises(MissingMaterial, match=rf"it holds {', '.join(names[:8])}{more}$"),
+    ):
+        db["steel"]
+
+
 def test_a_database_that_is_not_there_is_named(tmp_path: Path) -> None:
     with pytest.raises(DatabaseError) as caught:
         open_database(tmp_path)

@@ -89,6 +89,8 @@ def test_a_card_of_refusals_alone() -> None:
 def test_a_falling_law_reads_as_people_write_it() -> None:
     law = viscosity_law(coefficients=(4.36, -0.13, 2.0), covariance=((0.0,) * 3,) * 3, flags=())
     assert "polynomial, 4.36 - 0.13 x + 2 x^2 [Pa.s]" in card_text(card(laws=(law,)))
+    cubic = viscosity_law(coefficients=(1.0, 2.0, 0.0, -3.0), covariance=((0.0,) * 4,) * 4)
+    assert "polynomial, 1 + 2 x + 0 x^2 - 3 x^3 [Pa.s]" in card_text(card(laws=(cubic,)))
 
 
 @pytest.mark.parametrize(
