@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Annotated, ClassVar, Generic, Literal, Protocol, Self
+from typing import TYPE_CHECKING, Annotated, ClassVar, Generic, Literal, Protocol
 
 import numpy as np
 from typing_extensions import TypeVar  # with a default, which typing has from Python 3.13 on
 
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import OutOfRange
+from deamat.core.flags import Flag as Flag  # one of the nouns, though declared there
 from deamat.core.kinds import (
     COUNT,
     ID,
@@ -23,9 +24,7 @@ from deamat.core.kinds import (
     SHA256,
     UNCERTAINTY,
     UNIT,
-    Kind,
     array,
-    named,
 )
 from deamat.core.kinds import Condition as Condition  # two of the nouns, though declared there
 from deamat.core.kinds import Detail as Detail
@@ -39,32 +38,6 @@ if TYPE_CHECKING:
 
 # What the value of a record is: an estimate, or only a limit of what was seen to hold.
 Bound = Literal["exact", "interval", "lower"]
-
-
-@dataclass(frozen=True, slots=True)
-class Flag:
-    """Something a reader of the value must know; it changes no number."""
-
-    ENTRY: ClassVar = Entry(
-        "flag",
-        "flags",
-        as_text=named(
-            "flag",
-            Kind({"type": "string", "pattern": "^[^:]+: "}, "TEXT"),
-            "What a reader of the value must know, as `name: detail`; no flag changes a number.",
-        ),
-    )
-
-    name: str
-    detail: str
-
-    def __str__(self) -> str:
-        return f"{self.name}: {self.detail}"
-
-    @classmethod
-    def from_text(cls, text: str) -> Self:
-        """Read back what `str` gives."""
-        return cls(*text.split(": ", 1))
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ from dataclasses import asdict
 from typing import Any, get_args
 
 from deamat.core.ledger import FileEntry, Status
+from deamat.run.flags import listed
 from deamat.run.measure import Bench, Group
 
 FAILURE = 3  # the exit code of a run with an internal error
@@ -50,6 +51,9 @@ def describe(
             for s in summaries
             for r in s.refusals
         ],
+        "flags": listed(
+            [r for s in summaries for r in s.records], [law for s in summaries for law in s.laws]
+        ),
         "waiting": _waiting(files),
         "rejected": [
             {"path": f.path, "line": f.line, "column": f.column, "reason": str(f)}

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 _LONG = 12  # more lines than this of one kind are counted, the rest is in `deamat audit`
@@ -33,6 +34,7 @@ def text(document: Mapping[str, Any]) -> str:
     lines += _internal(document)
     lines += _some("excluded", [f"{e['path']}: {e['reason']}" for e in document["excluded"]])
     lines += _some("warning", document["warnings"])
+    lines += flag_lines(document["flags"])
     synthetic = [c["name"] for c in document["campaigns"] if c["synthetic"]]
     if synthetic:
         lines.append(f"SYNTHETIC  {', '.join(synthetic)}: simulated files, not measurements")
@@ -80,6 +82,25 @@ def _refusals(refused: Iterable[Mapping[str, Any]]) -> list[str]:
         more = f" and {len(mine) - 1} more" if len(mine) > 1 else ""
         said.append(f"{material} {key} ({who}{more}): {mine[0]['reason']}")
     return said
+
+
+def flag_lines(flags: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Count the flags by severity; the serious ones in full, the others by name."""
+    if not flags:
+        return []
+    counts = Counter(flag["severity"] for flag in flags)
+    told = ", ".join(f"{n} {severity}" for severity, n in counts.items())
+    lines = [f"flags      {told} (of a material each; `deamat card` has them in full)"]
+    worst = [f for f in flags if f["severity"] == "serious"]
+    lines += _some(
+        "SERIOUS",
+        [f"{f['material']} {', '.join(f['values'])}: {f['name']}: {f['detail']}" for f in worst],
+    )
+    for severity in counts:
+        names = Counter(f["name"] for f in flags if f["severity"] == severity)
+        if severity != "serious":
+            lines.append(f"{severity:<11}" + ", ".join(f"{k} ({n})" for k, n in names.items()))
+    return lines
 
 
 def _violation(violation: Mapping[str, Any]) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from deamat.core.errors import FitRefused
+from deamat.core.flags import merged
 from deamat.core.properties import property_key
 from deamat.core.quantity import Contribution, Quantity
 from deamat.core.records import (
@@ -184,22 +185,8 @@ def origin_of(measurement: Measurement[Result], value: MeasuredValue, technique:
 
 def merged_flags(pairs: Sequence[Pair]) -> tuple[Flag, ...]:
     """Say each flag of the specimens once, with who has it and the first one's numbers."""
-    found: dict[str, list[tuple[str, str]]] = {}
-    for measurement, value in pairs:
-        for flag in value.flags:
-            found.setdefault(flag.name, []).append((measurement.specimen.id, flag.detail))
-    if len(pairs) == 1:
-        return pairs[0][1].flags
-    merged = []
-    for name, said in found.items():
-        who = list(dict.fromkeys(specimen for specimen, _ in said))
-        merged.append(
-            Flag(
-                name,
-                f"{len(who)} of {len(pairs)} specimens, such as {who[0]}: {said[0][1]}",
-            )
-        )
-    return tuple(merged)
+    noticed = [(measurement.specimen.id, flag) for measurement, v in pairs for flag in v.flags]
+    return merged(noticed, len(pairs))
 
 
 def _flags_of_mean(pairs: Sequence[Pair], mean: float) -> tuple[Flag, ...]:
