@@ -54,7 +54,7 @@ from deamat.core.quantity import Quantity
 from deamat.core.records import Specimen
 from deamat.core.technique import AnyTechnique, Context
 from deamat.formats.format import Format
-from deamat.formats.rawfile import RawFile, whole_file
+from deamat.formats.rawfile import RawFile, read_raw
 
 Fit = tuple[float, float]  # modulus and its standard uncertainty [Pa]
 Contender = Callable[[Curve], Fit | None]
@@ -89,7 +89,7 @@ def ours(form: type[RawFile] = _Unhashed) -> Contender:
     section = geometry.circular_section({"diameter_m": Quantity(DIAMETER_m, "m", 1e-5, 1e-5)})
 
     def fit(curve: Curve) -> Fit:
-        raw = form(curve.path.name, whole_file(curve.path))
+        raw = form(curve.path.name, read_raw(curve.path.parent, curve.path.name))
         recording = detect(raw).read(raw)
         whole = curves.stress_strain(recording, section, height, "height", machine)
         loading = whole.nominal_strain[: estimators.loading_branch(whole.nominal_strain)]
@@ -117,7 +117,7 @@ def ours_whole() -> Contender:
     specimen = _specimen()
 
     def fit(curve: Curve) -> Fit:
-        raw = RawFile(curve.path.name, whole_file(curve.path))
+        raw = RawFile(curve.path.name, read_raw(curve.path.parent, curve.path.name))
         recording = detect(raw).read(raw)
         measurement = technique.reduce(specimen, recording, context)
         for value in measurement.values:

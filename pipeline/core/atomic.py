@@ -6,6 +6,7 @@ import os
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import count
 from pathlib import Path
 
 from deamat.core.errors import ConfigError
@@ -90,6 +91,21 @@ def new_folder(place: Path) -> Iterator[Path]:
         rename_whole(part, place)
     finally:
         shutil.rmtree(part, ignore_errors=True)
+
+
+def set_aside(path: Path, ending: str) -> Path:
+    """Rename what stands at a path to a visible name beside it, so that its place is free.
+
+    Parameters
+    ----------
+    ending : what is put behind the name, with a number where that is taken
+    """
+    for number in count(1):
+        more = "" if number == 1 else f"-{number}"
+        aside = path.with_name(f"{path.name.lstrip('.')}.{ending}{more}")
+        if not os.path.lexists(aside):
+            break
+    return path.rename(aside)
 
 
 @contextmanager

@@ -49,21 +49,18 @@ class Campaign:
         return self.name
 
 
-def find_campaigns(raw: Path) -> tuple[list[Path], list[str]]:
-    """List the campaign folders of `raw/` and name everything else there, which is ignored."""
-    folders, others = [], []
-    for entry in sorted(raw.iterdir()):
-        if entry.name.startswith("."):
-            continue
-        if entry.is_dir() and (entry / CAMPAIGN_FILE).is_file():
-            folders.append(entry)
-        else:
-            others.append(entry.name + ("/" if entry.is_dir() else ""))
-    return folders, others
+def is_campaign_file(path: str) -> bool:
+    """Say whether a path relative to `raw/` is that of a campaign's `campaign.toml`."""
+    return path.count("/") == 1 and path.endswith(f"/{CAMPAIGN_FILE}")
 
 
-def load_campaign(folder: Path) -> Campaign:
+def load_campaign(folder: Path, data: bytes) -> Campaign:
     """Read `campaign.toml`.
+
+    Parameters
+    ----------
+    folder : of the campaign
+    data : content of its `campaign.toml`
 
     Raises
     ------
@@ -76,11 +73,11 @@ def load_campaign(folder: Path) -> Campaign:
         hint = f"the folder names the campaign: rename it, nearest valid: {near!r}"
         raise RawFileError(path, fault, None, None, folder.name, hint)
     try:
-        data = parse_toml((folder / CAMPAIGN_FILE).read_bytes())
+        declared = parse_toml(data)
     except ValueError as error:
         raise RawFileError(path, f"not valid TOML: {error}") from error
     try:
-        info = CampaignInfo.model_validate(data)
+        info = CampaignInfo.model_validate(declared)
     except ValidationError as error:
         said = "; ".join(f"{'.'.join(map(str, e['loc']))}: {e['msg']}" for e in error.errors())
         raise RawFileError(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import hashlib
 import json
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -111,8 +112,10 @@ def load_config(folder: Path, techniques: Mapping[str, type[BaseModel]]) -> Conf
 
     def read(name: str) -> dict[str, Any]:
         path = folder / name
-        if not path.is_file():
+        if not os.path.lexists(path):
             return {}
+        if not path.is_file():
+            raise ConfigError(f"{path} is no regular file, or a link that leads nowhere")
         data = path.read_bytes()
         files[name] = hashlib.sha256(data).hexdigest()
         try:

@@ -73,10 +73,22 @@ def _count_rows(lines: list[str]) -> int:
     return len(others) - len(above) if above else len(lines)
 
 
-def whole_file(path: Path) -> bytes:
-    """Return the bytes of a file, without the buffer that only helps who reads it in pieces."""
-    with path.open("rb", buffering=0) as file:
-        return file.read()
+def read_raw(raw: Path, path: str) -> bytes:
+    """Return the bytes of a file under `raw/`.
+
+    Raises
+    ------
+    RawFileError : it vanished, or may not be read
+    """
+    try:
+        # Without the buffer that only helps who reads a file in pieces.
+        with (raw / path).open("rb", buffering=0) as file:
+            return file.read()
+    except FileNotFoundError as error:
+        reason = "it vanished while the run was at work"
+        raise RawFileError(path, reason, hint="run again") from error
+    except OSError as error:
+        raise RawFileError(path, f"it cannot be read: {error.strerror}") from error
 
 
 # Header, separators of the rows below, the byte at which they end at the latest, and the head.

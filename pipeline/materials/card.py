@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, replace
 from functools import partial
@@ -269,13 +270,15 @@ def read_card(path: str | Path) -> MaterialCard:
     CardError : not a file, not JSON, or not a whole and unchanged card; the message names it
     """
     try:
+        if os.path.lexists(path) and not Path(path).is_file():  # a pipe would never end
+            raise CardError("no regular file")
         document = json.loads(Path(path).read_bytes())
         if not isinstance(document, dict):
             raise CardError("not a card: a card is one JSON object")
         return MaterialCard.from_document(document)
     except OSError as error:
         raise CardError(f"{path}: {error.strerror}") from error
-    except ValueError as error:  # no UTF-8, no JSON, or a number that JSON does not know
+    except (ValueError, RecursionError) as error:  # no UTF-8, no JSON, or no end of brackets
         raise CardError(f"{path}: not JSON: {error}") from error
     except CardError as error:
         raise CardError(f"{path}: {error}") from error

@@ -14,7 +14,7 @@ from deamat.run.environment import installed
 from deamat.run.folders import Folders, look
 from deamat.run.host import cpu_count
 from deamat.run.published import intact
-from deamat.run.state import State
+from deamat.run.state import STATE_FILE, DamagedState, State, set_state_aside
 
 
 def run_all(
@@ -38,6 +38,20 @@ def run_all(
     for what, folder in (("--raw", folders.raw), ("--config", folders.config)):
         if not folder.is_dir():
             raise ConfigError(f"no folder {folder}; give one with {what}")
+    try:
+        return _run(folders, workers, progress, verify)
+    except DamagedState as error:
+        aside = set_state_aside(folders.processed, error)
+        document = _run(folders, workers, progress, verify)
+        return {**document, "warnings": [aside, *document["warnings"]]}
+
+
+def _run(
+    folders: Folders,
+    workers: int | None,
+    progress: Callable[[str, int, int], None],
+    verify: bool,
+) -> dict[str, Any]:
     with State(folders.processed) as state:
         seen = look(folders)
         document: dict[str, Any] = json.loads(state.read_note("document") or "{}")
@@ -59,18 +73,42 @@ def run_all(
         state.note("places", places)
         state.note("installed", installed())
         state.note("document", json.dumps(document))
-        return {**document, "nothing_to_do": False}
+        warnings = [*state.aside, *document["warnings"]]  # told once, not kept
+        return {**document, "warnings": warnings, "nothing_to_do": False}
 
 
 def explain(folders: Folders) -> dict[str, Any]:
-    """Say what a run would redo now and why, and what the last one redid."""
-    with State(folders.processed) as state:
-        from deamat.run.process import process
+    """Say what a run would redo now and why, and what the last one redid; nothing is written.
 
-        now = process(folders, state, look(folders), workers=1, progress=_silent, dry=True)
-        last = json.loads(state.read_note("document") or '{"redone": []}')
-        state.db.rollback()
-    return {"now": now["redone"], "last": last["redone"]}
+    Raises
+    ------
+    DamagedState : nobody knows what the last run did
+    """
+    last, now = last_run(folders, verify=False)
+    return {"now": now, "last": last["redone"]}
+
+
+def last_run(folders: Folders, verify: bool = True) -> tuple[dict[str, Any], list[str]]:
+    """Return the document of the last run and what one would redo now; nothing is written.
+
+    Raises
+    ------
+    DamagedState : nobody knows what the last run did
+    """
+    try:
+        with State(folders.processed, read_only=True) as state:
+            from deamat.run.process import process
+
+            seen = look(folders)
+            now = process(
+                folders, state, seen, workers=1, progress=_silent, verify=verify, dry=True
+            )
+            last = json.loads(state.read_note("document") or '{"redone": []}')
+    except DamagedState as error:
+        place = folders.processed / STATE_FILE
+        said = f"{place}: {error}; the next run sets it aside and redoes everything"
+        raise DamagedState(said) from error
+    return last, now["redone"]
 
 
 def _silent(stage: str, done: int, total: int) -> None:

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from deamat.run.state import State
+from deamat.run.state import DamagedState, State
 
 STALE = "to be redone"
 
@@ -72,7 +72,7 @@ class Book:
         return False
 
     def keep(self, stage: str, subject: str, components: Mapping[str, str], result: object) -> str:
-        """Remember what was made; gives its key."""
+        """Remember what was made; returns its key."""
         key = key_of(components)
         self.state.remember(stage, subject, key, components, pickle.dumps(result, protocol=5))
         return key
@@ -84,7 +84,10 @@ class Book:
 
     def result(self, stage: str, subject: str) -> Any:
         """Return what was made of a subject in an earlier run."""
-        return pickle.loads(self.state.result(stage, subject))
+        try:
+            return pickle.loads(self.state.result(stage, subject))
+        except (AttributeError, ImportError, TypeError, ValueError) as error:
+            raise DamagedState(f"what is kept of {stage} {subject}: {error}") from error
 
     def earlier(self, stage: str, subject: str, components: Mapping[str, str]) -> Any:
         """Return what an earlier run made of a subject, None where nothing or by other code.
@@ -97,9 +100,8 @@ class Book:
 
     def close(self) -> None:
         """Forget every subject that this run did not ask for, and note what went."""
-        for stage in {*self._asked, *(row[0] for row in self.state.db.execute(
-            "SELECT DISTINCT stage FROM made"))}:  # fmt: skip
+        for stage in {*self._asked, *self.state.stages()}:
             asked = self._asked.get(stage, set())
             gone = sorted(set(self._known(stage)) - asked)
             self.redone += [Redo(stage, subject, "its source is gone") for subject in gone]
-            self.state.forget_all_but(stage, asked)
+            self.state.forget(stage, gone)

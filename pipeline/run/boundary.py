@@ -51,7 +51,7 @@ def attempt(stage: str, subject: str, files: Sequence[str], work: Callable[[], T
     try:
         return work()
     except Exception as error:  # the one place: a unit may call any room, reader and library
-        if _is_of_the_machine(error):
+        if is_of_the_machine(error):
             raise
         said = "".join(traceback.format_exception_only(error)).strip().splitlines()[-1]
         told = "".join(traceback.format_exception(error))
@@ -64,7 +64,8 @@ def killed(stage: str, subject: str, files: Sequence[str]) -> Failure:
     return Failure(stage, subject, error, "", tuple(files))
 
 
-def _is_of_the_machine(error: Exception) -> bool:
+def is_of_the_machine(error: Exception) -> bool:
+    """Say whether the disk, the file system or the memory is at fault, and not the work."""
     if isinstance(error, sqlite3.Error):
         code = getattr(error, "sqlite_errorcode", None)  # extended: the low byte is the kind
         return code is not None and code & 0xFF in _OF_THE_MACHINE_IN_SQLITE

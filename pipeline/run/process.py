@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import hashlib
+import os
 import platform
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
+from copy import deepcopy
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 from deamat import __version__
-from deamat.core.campaign import find_campaigns
+from deamat.core.campaign import is_campaign_file
 from deamat.core.config import Config, load_config
 from deamat.core.errors import ConfigError
 from deamat.core.ledger import Failure, FileEntry, Provenance
@@ -19,14 +22,14 @@ from deamat.run.book import Book, key_of
 from deamat.run.boundary import attempt
 from deamat.run.contents import contents_id
 from deamat.run.describe import describe
-from deamat.run.folders import Folders, Stat, locate
+from deamat.run.folders import Folders, Input, Stat, locate, name_as_text
 from deamat.run.measure import Bench, Group, Measured, Progress, in_order, measure, summarise
 from deamat.run.publish import publish
 from deamat.run.published import listing
 from deamat.run.release import Release
 from deamat.run.stages import Stages, find_stages
 from deamat.run.state import State
-from deamat.run.survey import Survey, failed, survey, without_survey
+from deamat.run.survey import Survey, failed, survey, survey_strays, without_survey
 from deamat.run.work import source_of
 from deamat.run.workers import Workers
 from deamat.techniques import TECHNIQUES
@@ -34,15 +37,27 @@ from deamat.techniques import TECHNIQUES
 
 def hash_inputs(
     seen: Mapping[str, Stat], folders: Folders, state: State, verify: bool
-) -> dict[str, str]:
+) -> dict[str, Input]:
     """Hash every input whose size or time of change is new; all of them to verify."""
     known = {} if verify else state.inputs()
     return {
-        path: known[path][1]
-        if path in known and known[path][0] == stat
-        else hashlib.sha256(locate(path, folders).read_bytes()).hexdigest()
+        path: Input(stat.size, known[path][1])
+        if path in known and known[path] == (stat, known[path][1])
+        else _hashed(path, stat, folders)
         for path, stat in seen.items()
     }
+
+
+def _hashed(path: str, stat: Stat, folders: Folders) -> Input:
+    if stat.odd:
+        return Input(0, "", stat.odd)
+    try:
+        data = locate(path, folders).read_bytes()
+    except FileNotFoundError:
+        return Input(0, "", "it vanished while the run was at work; run again")
+    except OSError as error:
+        return Input(0, "", f"it cannot be read: {error.strerror}")
+    return Input(len(data), hashlib.sha256(data).hexdigest())
 
 
 def process(
@@ -68,9 +83,10 @@ def process(
     ------
     ConfigError : the configuration does not hold
     """
-    hashes = hash_inputs(seen, folders, state, verify)
+    inputs = hash_inputs(seen, folders, state, verify)
+    hashes = {path: one.sha256 for path, one in inputs.items()}
     config = load_config(folders.config, {t.key: t.config for t in TECHNIQUES.values()})
-    surveys, broken, ignored = look_at_raw(folders, seen, hashes, config)
+    surveys, broken, ignored = look_at_raw(folders, inputs, config)
     book = Book(state)
     stages = find_stages(TECHNIQUES, hashes, state)
     with Workers(workers) as pool:
@@ -87,44 +103,55 @@ def process(
             publish(groups, files, provenance, bench, None)
             book.close()
             return {"redone": [str(r) for r in book.redone]}
-        state.db.commit()  # measurements hold whatever becomes of the release
+        state.commit()  # measurements hold whatever becomes of the release
         release = Release(folders.processed, state.read_note("published"))
         publish(groups, files, provenance, bench, release)
         book.close()
         name = contents_id(release.building)
         place = release.publish(name)
+        state.aside += release.aside
     document = describe(bench, groups, files, ignored, name)
-    state.remember_inputs(seen, hashes)
+    state.remember_inputs(seen, inputs)
     state.note("published", listing(place))
     return document
 
 
 def look_at_raw(
-    folders: Folders, seen: Mapping[str, Stat], hashes: Mapping[str, str], config: Config
+    folders: Folders, inputs: Mapping[str, Input], config: Config
 ) -> tuple[list[Survey], list[Failure], list[str]]:
     """Survey every campaign; name what is no campaign."""
     if not folders.raw.is_dir():
         raise ConfigError(f"no folder {folders.raw}; give one with --raw")
-    found, ignored = find_campaigns(folders.raw)
+    raw = {path.removeprefix("raw/"): one for path, one in inputs.items() if path[:4] == "raw/"}
+    names = sorted({path.partition("/")[0] for path in raw if is_campaign_file(path)})
     spellings = Spellings()
     for material in config.materials:
         spellings.other("material", material, "config/materials.toml")
-    surveys: list[Survey] = []
+    surveys: list[Survey] = [survey_strays(raw, config)]
     broken: list[Failure] = []
-    for folder in found:
-        prefix = f"raw/{folder.name}/"
-        mine = [path for path in seen if path.startswith(prefix)]
-        sizes = {path[4:]: seen[path].size for path in mine}
-        sums = {path[4:]: hashes[path] for path in mine}
+    for name in names:
+        mine = {path: one for path, one in raw.items() if path.startswith(f"{name}/")}
+        trial = deepcopy(spellings)
         done = attempt(
-            "survey", folder.name, sorted(sizes),
-            partial(survey, folder, sizes, sums, TECHNIQUES, config, spellings),
+            "survey", name, sorted(mine),
+            partial(survey, folders.raw / name, mine, TECHNIQUES, config, trial),
         )  # fmt: skip
         if isinstance(done, Failure):
             broken.append(done)
-            done = without_survey(done, sizes, sums, TECHNIQUES)
+            done = without_survey(done, mine, TECHNIQUES)
+        else:
+            spellings = trial
         surveys.append(done)
-    return surveys, broken, ignored
+    return surveys, broken, _ignored(folders.raw, {*names, *surveys[0].entries})
+
+
+def _ignored(raw: Path, known: Collection[str]) -> list[str]:
+    """Name what stands in `raw/` and is neither a campaign nor accounted for."""
+    with os.scandir(raw) as entries:
+        names = {name_as_text(e.name): Path(e).is_dir() for e in entries if e.name[0] != "."}
+    return sorted(
+        name + ("/" if folder else "") for name, folder in names.items() if name not in known
+    )
 
 
 def _account(surveys: list[Survey], measured: list[Measured]) -> list[FileEntry]:

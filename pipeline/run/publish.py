@@ -144,7 +144,7 @@ def all_but_culprits(
 
 
 def _cards(groups: Sequence[Group], press: Press) -> tuple[list[MaterialCard], dict[str, str]]:
-    """Make the card of each material; gives those that could be made, and the key of each."""
+    """Make the card of each material; returns those that could be made, and the key of each."""
     by_material: dict[str, list[Group]] = {}
     for group in groups:
         by_material.setdefault(group.material, []).append(group)

@@ -8,8 +8,10 @@ from pathlib import Path
 
 from deamat.core.atomic import write_atomically
 from deamat.core.campaign import CAMPAIGN_FILE, MANIFEST_FILE
-from deamat.core.errors import ConfigError
+from deamat.core.errors import ConfigError, RawFileError
 from deamat.core.manifest import compare, format_manifest, parse_manifest
+from deamat.formats.rawfile import read_raw
+from deamat.run.folders import Stat, walk
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,15 +41,16 @@ def register(raw: Path, campaign: str, accept: bool) -> Registration:
     if not (folder / CAMPAIGN_FILE).is_file():
         raise ConfigError(f"{folder} is no campaign: it has no {CAMPAIGN_FILE}")
     manifest = folder / MANIFEST_FILE
+    seen = {path.removeprefix(f"{campaign}/"): stat for path, stat in walk(str(folder), campaign)}
     found = {
-        path.relative_to(folder).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
-        for path in sorted(folder.rglob("*"))
-        if path.is_file() and path != manifest and not path.name.startswith(".")
+        path: hashlib.sha256(read_raw(raw, f"{campaign}/{path}")).hexdigest()
+        for path, stat in seen.items()
+        if path != MANIFEST_FILE and not stat.odd
     }
+    odd = [f"ignored  {path}: {stat.odd}" for path, stat in seen.items() if stat.odd]
     old = {}
-    if manifest.is_file():
-        text = manifest.read_bytes().decode("utf-8")
-        old = parse_manifest(text, f"{campaign}/{MANIFEST_FILE}")
+    if MANIFEST_FILE in seen:
+        old = _registered(raw, f"{campaign}/{MANIFEST_FILE}", seen[MANIFEST_FILE])
     difference = compare(old, found)
     lines = [f"new      {name}" for name in difference.extra]
     lines += [f"missing  {name} (was {old[name][:12]})" for name in difference.missing]
@@ -55,7 +58,9 @@ def register(raw: Path, campaign: str, accept: bool) -> Registration:
         f"changed  {name}: {old[name][:12]} -> {found[name][:12]}" for name in difference.changed
     ]
     if not lines:
-        return Registration(f"{campaign}: {len(found)} files, all as in the manifest", False)
+        said = f"{campaign}: {len(found)} files, all as in the manifest"
+        return Registration("\n".join([*odd, said]), False)
+    lines += odd
     if (difference.changed or difference.missing) and not accept:
         lines.append(
             f"{campaign}: nothing written; if these changes are right, say "
@@ -65,3 +70,12 @@ def register(raw: Path, campaign: str, accept: bool) -> Registration:
     write_atomically(manifest, format_manifest(found).encode())
     lines.append(f"{campaign}: {len(found)} files registered")
     return Registration("\n".join(lines), False)
+
+
+def _registered(raw: Path, path: str, stat: Stat) -> dict[str, str]:
+    if stat.odd:
+        raise RawFileError(path, stat.odd)
+    try:
+        return parse_manifest(read_raw(raw, path).decode("utf-8"), path)
+    except UnicodeDecodeError as error:
+        raise RawFileError(path, f"not UTF-8: {error}") from error

@@ -9,12 +9,17 @@ from __future__ import annotations
 
 import filecmp
 import os
+import re
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 
 from deamat.core.atomic import rename_whole, turn_link
 from deamat.run.published import FACES, as_listed, known, leads_to
+from deamat.run.state import out_of_the_way
 
+_NAME = re.compile(r"[0-9a-f]{12}(-[0-9]+)?")  # of a release; other folders are not ours to delete
+_READ_ONLY = 0o444
 _KEPT = 3  # releases beside the current one; an auditor may look back, a disk must not fill
 
 
@@ -25,12 +30,19 @@ class Release:
         """Start building; `published` is the `listing` of the release before."""
         self.processed = processed
         self.releases = processed / "releases"
+        self.aside: list[str] = []  # what was found in the way, in words
+        self._make_room(self.releases, Path.is_dir, "was no folder")
         self.releases.mkdir(parents=True, exist_ok=True)
         for left in self.releases.glob(".building*"):  # of a run that was killed
-            shutil.rmtree(left)
+            self._make_room(left, _is_own_folder, "was no folder")
+            shutil.rmtree(left, ignore_errors=True)
         self.building = self.releases / ".building"
         self.building.mkdir()
         self.before, self.files = known(published)
+
+    def _make_room(self, place: Path, is_expected: Callable[[Path], bool], why: str) -> None:
+        if os.path.lexists(place) and not is_expected(place):
+            self.aside.append(out_of_the_way(place, why))
 
     def path(self, name: str) -> Path:
         """Where to write an output."""
@@ -44,7 +56,10 @@ class Release:
         if not all(n in self.files and as_listed(place / n, self.files[n]) for n in names):
             return False
         for name in names:
-            os.link(place / name, self.path(name))
+            try:
+                os.link(place / name, self.path(name))
+            except OSError:  # a file system without hard links, or too many of them
+                shutil.copy2(place / name, self.path(name))
         return True
 
     def drop(self, *names: str) -> None:
@@ -54,32 +69,44 @@ class Release:
                 (self.building / name).unlink()
 
     def publish(self, name: str) -> Path:
-        """Make the release whole and current."""
+        """Make the release whole and current; its files can be read, but not written into.
+
+        A file that did not change is one with that of the release before: whoever wrote into it
+        would rewrite the past.
+        """
+        for path in self.building.rglob("*"):
+            if path.is_file():
+                path.chmod(_READ_ONLY)
         place = self.releases / name
         number = 1
-        while place.exists() and not _same(self.building, place):
+        while os.path.lexists(place) and not _same(self.building, place):
             number += 1  # somebody changed a published file: leave it as evidence
             place = self.releases / f"{name}-{number}"
         if place.exists():
             shutil.rmtree(self.building)
+            os.utime(place)  # as young as one that was made now
         else:
             rename_whole(self.building, place)
-        _point(self.releases / "current", place.name)
+        self._point(self.releases / "current", place.name)
         for face in FACES:
-            _point(self.processed / face, f"releases/current/{face}")
+            self._point(self.processed / face, f"releases/current/{face}")
         self._prune(place)
         return place
 
     def _prune(self, current: Path) -> None:
-        old = [p for p in self.releases.iterdir() if p.is_dir() and not p.is_symlink()]
+        old = [p for p in self.releases.iterdir() if _NAME.fullmatch(p.name) and _is_own_folder(p)]
         old = sorted((p for p in old if p != current), key=lambda p: (p.stat().st_mtime_ns, p.name))
         for path in old[:-_KEPT]:
-            shutil.rmtree(path)
+            shutil.rmtree(path, ignore_errors=True)
+
+    def _point(self, link: Path, target: str) -> None:
+        self._make_room(link, Path.is_symlink, "was no link of this program")
+        if not leads_to(link, target):
+            turn_link(link, target)
 
 
-def _point(link: Path, target: str) -> None:
-    if not leads_to(link, target):
-        turn_link(link, target)
+def _is_own_folder(path: Path) -> bool:
+    return path.is_dir() and not path.is_symlink()
 
 
 def _same(one: Path, other: Path) -> bool:

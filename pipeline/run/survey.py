@@ -5,9 +5,10 @@ from __future__ import annotations
 import csv
 import difflib
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Literal
 
 from deamat.core.campaign import CAMPAIGN_FILE, MANIFEST_FILE, Campaign, load_campaign
 from deamat.core.config import Config
@@ -19,6 +20,8 @@ from deamat.core.register import REGISTER_FILES, read_register
 from deamat.core.slug import Spellings
 from deamat.core.technique import AnyTechnique
 from deamat.formats.documentation import stated_units
+from deamat.formats.rawfile import read_raw
+from deamat.run.folders import Input
 
 _DOCUMENTS = (".md", ".pdf", ".rst")
 
@@ -42,8 +45,7 @@ class Survey:
 
 def survey(
     folder: Path,
-    sizes: Mapping[str, int],
-    hashes: Mapping[str, str],
+    inputs: Mapping[str, Input],
     techniques: Mapping[str, AnyTechnique],
     config: Config,
     spellings: Spellings,
@@ -52,13 +54,13 @@ def survey(
 
     Parameters
     ----------
-    sizes, hashes : path relative to `raw/` to size and sha256, of this campaign's files
+    inputs : this campaign's files, by path relative to `raw/`
     spellings : of the names in the configuration and in the campaigns surveyed before
     """
     result = Survey(None)
-    difference, broken = _manifest(folder, hashes)
-    for path in sizes:
-        result.entries[path] = _entry(path, sizes[path], hashes[path], difference, techniques)
+    difference, broken = _manifest(folder, inputs)
+    for path, found in inputs.items():
+        result.entries[path] = _entry(path, found, difference, techniques)
     if broken:
         _reject(result, broken)
     for name in difference.missing:
@@ -69,10 +71,11 @@ def survey(
             )
     _exclude(result, config)
     try:
-        campaign = load_campaign(folder)
+        campaign_file = f"{folder.name}/{CAMPAIGN_FILE}"
+        campaign = load_campaign(folder, _content(campaign_file, folder, inputs))
         if other := spellings.other("campaign", folder.name, "raw/"):
             reason = f"the folder of another campaign differs only in case: {other}"
-            raise RawFileError(f"{folder.name}/{CAMPAIGN_FILE}", reason)
+            raise RawFileError(campaign_file, reason)
         result.campaign = campaign
     except RawFileError as error:
         _reject(result, error)
@@ -81,26 +84,25 @@ def survey(
                 why = f"{folder.name}/{CAMPAIGN_FILE} cannot be read"
                 result.entries[path] = replace(entry, status="rejected", reason=why)
         return result
-    documents = [p for p, e in result.entries.items() if e.role == "document"]
-    texts = [(folder.parent / p).read_text("utf-8", "replace") for p in documents if _text(p)]
+    documents = [p for p, e in result.entries.items() if e.role == "document" and _text(p)]
+    texts = [data.decode("utf-8", "replace") for _, data in _readable(documents, folder, result)]
     result.stated_units = stated_units("\n".join(texts))
-    for path, entry in sorted(result.entries.items()):
-        if entry.role == "register" and entry.status != "excluded":
-            _register(path, folder, result, techniques, config, spellings)
+    registers = sorted(p for p, e in result.entries.items() if e.role == "register")
+    for path, data in _readable(registers, folder, result):
+        _register(path, data, folder, result, techniques, config, spellings)
     _unnamed(result, folder, techniques)
     return result
 
 
 def without_survey(
-    failure: Failure,
-    sizes: Mapping[str, int],
-    hashes: Mapping[str, str],
-    techniques: Mapping[str, AnyTechnique],
+    failure: Failure, inputs: Mapping[str, Input], techniques: Mapping[str, AnyTechnique]
 ) -> Survey:
     """Account for the files of a campaign whose survey ended in an internal error."""
     entries = {
-        path: failed(FileEntry(path, hashes[path], size, _role(path, techniques), "used"), failure)
-        for path, size in sizes.items()
+        path: failed(
+            FileEntry(path, one.sha256, one.size, _role(path, techniques), "used"), failure
+        )
+        for path, one in inputs.items()
     }
     return Survey(None, entries=entries)
 
@@ -111,19 +113,53 @@ def failed(entry: FileEntry, failure: Failure) -> FileEntry:
     return replace(entry, status="failed", reason=reason, placed=False)
 
 
+def survey_strays(raw: Mapping[str, Input], config: Config) -> Survey:
+    """Account for what cannot be read directly in `raw/`, outside of every campaign."""
+    result = Survey(None)
+    for path, one in raw.items():
+        if "/" not in path and one.odd:
+            result.entries[path] = FileEntry(path, "", 0, "unnamed", "rejected", reason=one.odd)
+    _exclude(result, config)
+    return result
+
+
+def _content(path: str, folder: Path, inputs: Mapping[str, Input]) -> bytes:
+    """Read a file of a campaign, if it is one that may be opened.
+
+    Raises
+    ------
+    RawFileError : it may not, or cannot be read any more
+    """
+    if inputs[path].odd:
+        raise RawFileError(path, inputs[path].odd)
+    return read_raw(folder.parent, path)
+
+
+def _readable(paths: Sequence[str], folder: Path, result: Survey) -> Iterator[tuple[str, bytes]]:
+    """Read those files that nothing speaks against; one that cannot be read is rejected."""
+    for path in paths:
+        if result.entries[path].status == "used":
+            try:
+                data = read_raw(folder.parent, path)
+            except RawFileError as error:
+                _reject(result, error)
+            else:
+                yield path, data
+
+
 def _text(path: str) -> bool:
     return path.lower().endswith((".txt", ".md", ".rst"))
 
 
 def _entry(
-    path: str,
-    size: int,
-    sha256: str,
-    difference: Difference,
-    techniques: Mapping[str, AnyTechnique],
+    path: str, found: Input, difference: Difference, techniques: Mapping[str, AnyTechnique]
 ) -> FileEntry:
     name = path.partition("/")[2]
-    role = _role(path, techniques)
+    role, size, sha256 = _role(path, techniques), found.size, found.sha256
+    if found.odd:
+        changed = name in difference.changed
+        manifest: Literal["changed", "ok"] = "changed" if changed else "ok"
+        return FileEntry(path, sha256, size, role, "rejected", manifest, found.odd)
     if name in difference.changed:
         reason = "file content differs from the manifest"
         return FileEntry(path, sha256, size, role, "used", "changed", reason)
@@ -145,13 +181,13 @@ def _role(path: str, techniques: Mapping[str, AnyTechnique]) -> Role:
     return "unnamed"
 
 
-def _manifest(folder: Path, hashes: Mapping[str, str]) -> tuple[Difference, RawFileError | None]:
+def _manifest(folder: Path, inputs: Mapping[str, Input]) -> tuple[Difference, RawFileError | None]:
     path = f"{folder.name}/{MANIFEST_FILE}"
-    found = {p.partition("/")[2]: sha for p, sha in hashes.items() if p != path}
-    if path not in hashes:
+    found = {p.partition("/")[2]: one.sha256 for p, one in inputs.items() if p != path}
+    if path not in inputs:
         return compare({}, found), None
     try:
-        text = (folder / MANIFEST_FILE).read_bytes().decode("utf-8")
+        text = _content(path, folder, inputs).decode("utf-8")
         return compare(parse_manifest(text, path), found), None
     except UnicodeDecodeError as error:
         return compare({}, found), RawFileError(path, f"not UTF-8: {error}")
@@ -175,6 +211,7 @@ def _reject(result: Survey, error: RawFileError) -> None:
 
 def _register(
     path: str,
+    data: bytes,
     folder: Path,
     result: Survey,
     techniques: Mapping[str, AnyTechnique],
@@ -182,7 +219,6 @@ def _register(
     spellings: Spellings,
 ) -> None:
     name = path.split("/")[1]
-    data = (folder.parent / path).read_bytes()
     if name not in techniques:
         near = difflib.get_close_matches(name, techniques, n=1)
         hint = f"; did you mean {near[0]!r}?" if near else ""
@@ -251,7 +287,7 @@ def _claim(specimen: Specimen, result: Survey, owners: dict[str, Specimen]) -> b
         raise RawFileError(specimen.register, reason, specimen.line, None, specimen.id)
     owners[path] = specimen
     result.entries[path] = replace(entry, role="recording")
-    return entry.status != "excluded"
+    return entry.status == "used"
 
 
 def _reject_rows(
@@ -290,7 +326,7 @@ def _files_named(data: bytes, path: str) -> list[str]:
 def _unnamed(result: Survey, folder: Path, techniques: Mapping[str, AnyTechnique]) -> None:
     """A data file that no register names is rejected: nobody can say what it belongs to."""
     for path, entry in result.entries.items():
-        if entry.role != "unnamed" or entry.status == "excluded":
+        if entry.role != "unnamed" or entry.status != "used":
             continue
         technique = path.split("/")[1]
         register = f"{folder.name}/{technique}/{techniques[technique].register.file}"

@@ -14,7 +14,7 @@ from deamat.core.technique import Context
 from deamat.formats.detect import by_name, detect
 from deamat.formats.documentation import contradictions
 from deamat.formats.format import Format
-from deamat.formats.rawfile import RawFile, whole_file
+from deamat.formats.rawfile import RawFile, read_raw
 from deamat.run.boundary import attempt, killed
 from deamat.techniques import TECHNIQUES
 
@@ -91,7 +91,7 @@ def source_of(specimen: Specimen) -> str:
 
 
 def _read(task: Task, path: str) -> Recording:
-    file = RawFile(path, whole_file(task.raw / path), task.ends_open)
+    file = RawFile(path, read_raw(task.raw, path), task.ends_open)
     if file.sha256 != task.sha256:
         raise RawFileError(path, "the file changed while it was being read", hint="run again")
     recording = _format(task.specimen, file).read(file)

@@ -174,6 +174,7 @@ def test_an_edited_output_is_made_again(folders: Folders) -> None:
     run(folders)
     card = folders.processed / "cards" / f"{_SOFT}.json"
     before = card.read_bytes()
+    card.chmod(0o644)
     card.write_bytes(before.replace(b"Pa", b"kg"))
     run(folders)
     assert card.read_bytes() == before

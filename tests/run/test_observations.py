@@ -8,6 +8,7 @@ from pathlib import Path
 
 from deamat.core.config import load_config
 from deamat.core.slug import Spellings
+from deamat.run.folders import Input
 from deamat.run.survey import Survey, survey
 from deamat.techniques import TECHNIQUES
 from deamat.twin.handling import handling_part
@@ -25,8 +26,7 @@ def look(folder: Path, contents: Mapping[str, bytes], spellings: Spellings | Non
     names = {path.relative_to(folder.parent).as_posix(): path.read_bytes() for path in found}
     return survey(
         folder,
-        {name: len(data) for name, data in names.items()},
-        {name: hashlib.sha256(data).hexdigest() for name, data in names.items()},
+        {n: Input(len(data), hashlib.sha256(data).hexdigest()) for n, data in names.items()},
         TECHNIQUES,
         load_config(ROOT / "config", {t.key: t.config for t in TECHNIQUES.values()}),
         spellings or Spellings(),

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
+import re
 import shutil
-import sqlite3
+import stat
 from pathlib import Path
 
 import pytest
@@ -68,17 +70,6 @@ def test_a_run_that_dies_leaves_the_last_release_readable(
     assert _bytes(folders.processed) != before
 
 
-def test_a_damaged_state_costs_time_not_results(folders: Folders) -> None:
-    release = run(folders)["release"]
-    state = folders.processed / "state.sqlite"
-    state.write_bytes(b"this is no database" * 100)
-    assert run(folders)["release"] == release
-    with sqlite3.connect(state) as db:
-        db.execute("DROP TABLE made")
-    assert run(folders)["release"] == release
-    assert run(folders)["nothing_to_do"]
-
-
 def test_a_second_run_in_the_same_folder_is_turned_away(folders: Folders) -> None:
     with (
         State(folders.processed),
@@ -109,3 +100,63 @@ def test_synthetic_is_said_on_every_output(folders: Folders) -> None:
     for name, data in _bytes(folders.processed).items():
         if name.endswith((".json", ".svg")) and not name.startswith("audit"):
             assert b"ynthetic" in data or b"SYNTHETIC" in data, name
+
+
+@pytest.mark.usefixtures("quick_figures")
+def test_published_files_cannot_be_written_into(folders: Folders) -> None:
+    """What did not change is one file with that of the release before."""
+    run(folders)
+    first = (folders.processed / "releases" / "current").resolve()
+    _another_release(folders, 0)
+    second = (folders.processed / "releases" / "current").resolve()
+    files = [p for place in (first, second) for p in place.rglob("*") if p.is_file()]
+    assert {stat.S_IMODE(p.stat().st_mode) for p in files} == {0o444}
+    shared = {p.name for p in files if p.stat().st_nlink > 1}
+    assert shared >= {"sylgard-182-40to1.json", "curves.h5"}
+
+
+@pytest.mark.usefixtures("quick_figures")
+def test_without_hard_links_what_did_not_change_is_copied(
+    folders: Folders, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run(folders)
+
+    def refuse(*_: object) -> None:
+        raise PermissionError(1, "Operation not permitted")
+
+    monkeypatch.setattr(os, "link", refuse)
+    _another_release(folders, 0)
+    card = folders.processed / "cards" / "sylgard-182-40to1.json"
+    assert card.stat().st_nlink == 1
+    assert run(folders)["nothing_to_do"]
+
+
+def _another_release(folders: Folders, number: int) -> str:
+    """Name a material otherwise and run: a release with other contents."""
+    text = (folders.config / "materials.toml").read_text()
+    changed = re.sub(r'"Sylgard[^"]*182 \(10:1\)"', f'"Sylgard-{number} 182 (10:1)"', text)
+    (folders.config / "materials.toml").write_text(changed)
+    return str(run(folders)["release"])
+
+
+@pytest.mark.usefixtures("quick_figures")
+def test_the_oldest_releases_are_deleted_and_nothing_else(folders: Folders) -> None:
+    releases = folders.processed / "releases"
+    names = [_another_release(folders, 0)]
+    (releases / "notes").mkdir()
+    (releases / "notes" / "mine.txt").write_text("kept")
+    names += [_another_release(folders, number) for number in (1, 2, 3)]
+    assert len(set(names)) == 4
+
+    def kept() -> set[str]:
+        return {p.name for p in releases.iterdir() if not p.is_symlink()} - {"notes"}
+
+    assert kept() == set(names)  # the current one and three before it
+    assert _another_release(folders, 0) == names[0]  # the oldest is current again
+    assert kept() == set(names)
+    names.append(_another_release(folders, 4))
+    assert kept() == {names[0], *names[2:]}  # not the first: it was current just now
+    names.append(_another_release(folders, 5))
+    assert kept() == {names[0], *names[3:]}
+    assert (releases / "notes" / "mine.txt").read_text() == "kept"
+    assert (releases / "current").readlink() == Path(names[-1])
