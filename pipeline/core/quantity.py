@@ -9,7 +9,7 @@ from typing import Annotated, ClassVar
 
 from deamat.core.errors import OutOfRange
 from deamat.core.kinds import SAID, UNCERTAINTY, UNIT
-from deamat.core.schema import After, Entry
+from deamat.core.schema import After, Entry, Mark
 from deamat.core.units import si_factor
 
 
@@ -41,11 +41,15 @@ class Quantity:
     value: float
     unit: Annotated[str, UNIT]
     u_independent: Annotated[
-        float, UNCERTAINTY, "Part that averages away over specimens (scatter between them, fit)."
+        float,
+        UNCERTAINTY,
+        Mark.ALWAYS,
+        "Part that averages away over specimens (scatter between them, fit).",
     ] = 0.0
     u_shared: Annotated[
         float,
         UNCERTAINTY,
+        Mark.ALWAYS,
         "Part common to the campaign (gauge, load cell, plate area): it never averages away.",
     ] = 0.0
 

@@ -138,13 +138,7 @@ class MeasuredValue:
 
 @dataclass(frozen=True, slots=True)
 class Refusal:
-    """A value that was asked for and not given, and why.
-
-    Parameters
-    ----------
-    selective : refused for its size (a slope within its noise), so that the mean of the specimens
-        that were not is biased
-    """
+    """A value that was asked for and not given, and why."""
 
     ENTRY: ClassVar = Entry("refusal", "refusals")
 
@@ -157,7 +151,11 @@ class Refusal:
     )
     conditions: Mapping[str, Condition] = field(default_factory=dict)
     diagnostics: Mapping[str, Detail] = field(default_factory=dict)
-    selective: bool = False
+    selective: Annotated[
+        bool,
+        "Refused for its size (a slope within its noise), so that the mean of the specimens that "
+        "were not is biased. Left out where it is false.",
+    ] = False
 
 
 class Result(Protocol):
@@ -247,6 +245,7 @@ class PropertyRecord:
     ]
     bound: Annotated[
         Bound,
+        Mark.ALWAYS,
         "What the value is: an estimate; the lower end of the interval within which the truth was "
         "seen to lie; or all that is known from below (right-censored: write `>= value`).",
     ] = "exact"

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import types
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import MISSING, dataclass, fields, is_dataclass, replace
 from enum import Enum
 from functools import cache
 from operator import attrgetter
@@ -41,7 +41,7 @@ class Mark(Enum):
 
     OF_THE_CARD = "stands once on the card, not in each of its entries"
     IN_FRONT = "its column stands before those of the others"
-    ALWAYS = "null where it is not known, where other fields that default to None are left out"
+    ALWAYS = "written also where it has its default, where other such fields are left out"
     NO_COLUMN = "follows from another column"
 
 
@@ -97,7 +97,8 @@ class Field:
     text : what it is
     marks : see `Mark`
     derived : computed from others, not read back
-    optional : left out of JSON where it is None
+    optional : left out of JSON where it has its default
+    default : that one; None without
     """
 
     name: str
@@ -108,6 +109,7 @@ class Field:
     marks: frozenset[Mark] = frozenset()
     derived: bool = False
     optional: bool = False
+    default: Any = None
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -146,7 +148,7 @@ def _listed(cls: Any) -> tuple[Field, ...]:
         if is_dataclass(hint) and not hasattr(hint, "ENTRY"):  # its fields stand among ours
             found += [_below(declared.name, field) for field in fields_of(hint)]
         elif Mark.OF_THE_CARD not in _marks(hint):
-            found.append(_field(declared.name, hint, optional=declared.default is None))
+            found.append(_field(declared.name, hint, declared.default))
         found += [field for after, field in derived if after == declared.name]
     return tuple(found)
 
@@ -157,15 +159,16 @@ def _derived(cls: Any) -> Iterator[tuple[str, Field]]:
             hint = hints_of(member.fget, include_extras=True)["return"]
             for mark in _marks(hint):
                 if isinstance(mark, After):
-                    yield mark.field, replace(_field(name, hint, optional=False), derived=True)
+                    yield mark.field, replace(_field(name, hint, MISSING), derived=True)
 
 
 def _marks(hint: Any) -> tuple[Any, ...]:
     return get_args(hint)[1:] if get_origin(hint) is Annotated else ()
 
 
-def _field(name: str, hint: Any, *, optional: bool) -> Field:
+def _field(name: str, hint: Any, default: Any) -> Field:
     told = _marks(hint)
+    listed = isinstance(default, tuple)  # a list that is empty says so
     marks = frozenset(mark for mark in told if isinstance(mark, Mark))
     return Field(
         next((mark.name for mark in told if isinstance(mark, Called)), name),
@@ -174,7 +177,8 @@ def _field(name: str, hint: Any, *, optional: bool) -> Field:
         attrgetter(name),
         " ".join(mark for mark in told if isinstance(mark, str)),
         marks,
-        optional=optional and Mark.ALWAYS not in marks,
+        optional=default is not MISSING and not listed and Mark.ALWAYS not in marks,
+        default=None if default is MISSING else default,
     )
 
 
@@ -266,7 +270,7 @@ def document_of(thing: Any, **told: Any) -> dict[str, Any]:
     document: dict[str, Any] = {}
     for field in fields_of(type(thing)):
         value = told[field.name] if field.name in told else field.get(thing)
-        if value is not None or not field.optional:
+        if not field.optional or value != field.default:
             document[field.name] = field.kind.write(value)
     return document
 

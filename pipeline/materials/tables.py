@@ -145,7 +145,7 @@ def _owned_rows(cls: Any, entries: Iterable[Any], number: int) -> Iterator[tuple
 def _cells(document: Document, cls: Any) -> Iterator[Cell]:
     """Flatten an object: an interval gives two cells, what is nested becomes JSON text."""
     for field in stored_fields(cls):
-        value = document.get(field.name)
+        value = document.get(field.name, field.default)
         if len(field.columns) > 1:
             yield from value or (None,) * len(field.columns)
         else:

@@ -180,7 +180,7 @@ def _facts(entry: Entry, card: MaterialCard) -> Iterator[tuple[str, str]]:
     yield "conditions", readable_conditions(entry.conditions)
     for field in fields_of(type(entry)):
         value = field.get(entry)
-        if field.optional and value is not None:
+        if field.optional and value != field.default:
             yield field.name, _number_or_words(value)
     credits_ = [credit_text(c) for c in card.campaigns if c.campaign == entry.campaign]
     yield "campaign", next(iter(credits_), entry.campaign)

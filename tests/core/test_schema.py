@@ -25,7 +25,7 @@ from deamat.core.schema import (
 @dataclass(frozen=True, kw_only=True)
 class Point:
     x: float
-    y: float = 0.0
+    y: Annotated[float, Mark.ALWAYS] = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +39,8 @@ class Thing:
     at: Point
     span: tuple[float, float] | None = None
     u: Annotated[float | None, UNCERTAINTY, Mark.ALWAYS] = None
-    state: Literal["on", "off"] = "off"
+    state: Annotated[Literal["on", "off"], Mark.ALWAYS] = "off"
+    rare: bool = False
     path: tuple[str, ...] = ()
     flags: tuple[Flag, ...] = ()
 
@@ -66,13 +67,21 @@ def test_an_object_is_written_in_the_order_of_its_fields() -> None:
 
 
 @pytest.mark.parametrize(
-    "one", [thing(), thing(span=(0.0, 2.5), u=0.5), thing(flags=(Flag("wet", "very: 2"),))]
+    "one",
+    [
+        thing(),
+        thing(rare=True),
+        thing(span=(0.0, 2.5), u=0.5),
+        thing(flags=(Flag("wet", "very: 2"),)),
+    ],
 )
 def test_an_object_comes_back(one: Thing) -> None:
     assert read(Thing, document_of(one), owner="us", other="nobody asks for it") == one
 
 
-def test_a_field_that_nothing_is_known_of_is_left_out_unless_it_is_always_told() -> None:
+def test_a_field_that_has_its_default_is_left_out_unless_it_is_always_told() -> None:
+    assert "rare" not in document_of(thing())
+    assert document_of(thing(rare=True))["rare"] is True
     assert "span" not in document_of(thing())
     assert document_of(thing(span=(0.0, 2.5)))["span"] == [0.0, 2.5]
     assert document_of(thing())["u"] is None

@@ -17,6 +17,8 @@ from deamat.materials.document import canonical_json
 from tests.materials import samples
 from tests.materials.samples import aged, card, modulus, refusal, viscosity_law
 
+GIVEN_AWAY = Path(__file__).parents[1] / "data" / "cards" / "gel-a.json"
+
 
 def test_a_plain_question_gets_the_value_at_the_reference_age() -> None:
     assert card()["compressive_modulus"] == Quantity(158812.5, "Pa", 600.0, 800.0)
@@ -44,6 +46,12 @@ def test_none_asks_for_a_record_without_the_condition() -> None:
     plain = modulus(conditions={})
     both = card(records=(plain, modulus(conditions={"age": "2 months"})))
     assert both.record("compressive_modulus", age=None) == plain
+
+
+def test_a_card_that_was_given_away_is_read_and_written_as_it_was() -> None:
+    """Whoever has it must be able to design from it: new fields have defaults and stay out."""
+    assert read_card(GIVEN_AWAY) == card().canonical()
+    assert card().to_json() == GIVEN_AWAY.read_bytes()
 
 
 def test_what_is_missing_is_told_apart_from_what_there_is_instead() -> None:
