@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import hashlib
+from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+import deamat.run.audit
 from deamat.core.errors import ConfigError
+from deamat.core.ledger import FileEntry
 from deamat.run.audit import audit, audit_text
-from deamat.run.folders import Folders
-from deamat.run.register import register
+from deamat.run.folders import Folders, look
+from deamat.run.register import Registration, register
 from tests.run.conftest import curves, run
 
 pytestmark = pytest.mark.usefixtures("quick_figures")
@@ -120,3 +124,104 @@ def test_folders_without_a_campaign_file_are_named_and_ignored(folders: Folders)
 def test_registering_no_campaign_is_wrong_usage(folders: Folders) -> None:
     with pytest.raises(ConfigError, match=r"nowhere is no campaign: it has no campaign\.toml"):
         register(folders.raw, "nowhere", accept=False)
+
+
+def test_a_file_that_the_account_lacks_is_unaccounted(
+    folders: Folders, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (folders.raw / "loose").mkdir()
+    (folders.raw / "loose" / "a.csv").write_text("1\n")
+    run(folders)
+    seen = look(folders)
+    stat = seen["raw/demo/campaign.toml"]
+    monkeypatch.setattr(
+        deamat.run.audit, "look", lambda _: {**seen, "raw/demo/late.txt": stat, "raw/x": stat}
+    )
+    document = audit(folders)
+    assert document["unaccounted"] == ["demo/late.txt"]
+    assert document["ignored"] == ["loose/"]
+
+
+def test_the_account_as_a_page() -> None:
+    entries = [
+        FileEntry("demo/campaign.toml", "1" * 64, 9, "campaign", "used"),
+        FileEntry("demo/t/a.csv", "2" * 64, 9, "recording", "used"),
+        FileEntry("demo/t/b.csv", "3" * 64, 9, "recording", "used", "extra", "not in the manifest"),
+        FileEntry("demo/t/c.csv", "4" * 64, 9, "recording", "refused", reason="E: too short"),
+        FileEntry("demo/t/d.csv", "5" * 64, 9, "recording", "excluded", reason="it slipped"),
+        FileEntry("demo/t/e.csv", "6" * 64, 9, "recording", "rejected", reason="line 2\nline 3"),
+    ]
+    error = {"stage": "card", "subject": "gel-a", "files": ["demo/t/a.csv"], "error": "E: burst"}
+    document: dict[str, Any] = {
+        "release": "0123abcd",
+        "files": [asdict(entry) for entry in entries],
+        "internal_errors": [
+            {**error, "traceback": "Traceback:\n  E: burst"},
+            {**error, "traceback": ""},
+        ],
+        "warnings": ["a name twice"],
+        "stale": ["card gel-b: code changed"],
+        "unaccounted": ["demo/t/late.txt"],
+        "twice": ["demo/t/a.csv"],
+        "ignored": ["loose/", "old/"],
+    }
+    assert audit_text(document) == (
+        """\
+release 0123abcd: 6 files, each accounted for once
+
+demo                         campaign   used          1
+demo                         recording  excluded      1
+demo                         recording  refused       1
+demo                         recording  rejected      1
+demo                         recording  used          2
+
+rejected:
+  demo/t/e.csv: line 2
+  line 3
+
+refused:
+  demo/t/c.csv: E: too short
+
+excluded:
+  demo/t/d.csv: it slipped
+
+differs from the manifest:
+  [extra] demo/t/b.csv: not in the manifest
+
+internal errors:
+  card gel-a (demo/t/a.csv)
+    Traceback:
+      E: burst
+  card gel-a (demo/t/a.csv)
+    E: burst
+warning: a name twice
+not up to date, and cannot be written: card gel-b: code changed
+unaccounted: demo/t/late.txt
+twice: demo/t/a.csv
+
+ignored: loose/, old/"""
+    )
+
+
+def test_registering_says_what_it_wrote_and_what_waits(folders: Folders) -> None:
+    place = folders.raw / "demo"
+    assert register(folders.raw, "demo", accept=False) == Registration(
+        "demo: 8 files, all as in the manifest", pending=False
+    )
+    (place / "notes.md").write_text("new\n")
+    shown = register(folders.raw, "demo", accept=False)
+    assert shown == Registration("new      notes.md\ndemo: 9 files registered", pending=False)
+    (place / "notes.md").unlink()
+    (place / "README.md").write_text("new\n")
+    shown = register(folders.raw, "demo", accept=False)
+    assert shown.pending
+    assert shown.text.splitlines()[0] == "new      README.md"
+    assert shown.text.splitlines()[1].startswith("missing  notes.md (was 7aa7a5359173)")
+    assert shown.text.endswith(
+        "nothing written; if these changes are right, say `deamat register demo --accept`"
+    )
+    assert "README.md" not in (place / "MANIFEST.sha256").read_text()
+    shown = register(folders.raw, "demo", accept=True)
+    assert shown.text.endswith("demo: 9 files registered")
+    assert not shown.pending
+    assert "README.md" in (place / "MANIFEST.sha256").read_text()

@@ -15,7 +15,9 @@ import deamat.run.publish
 from deamat import open_database
 from deamat.core.errors import ConfigError
 from deamat.run.folders import Folders
+from deamat.run.published import listing
 from deamat.run.register import register
+from deamat.run.release import Release
 from deamat.run.state import State
 from tests.run.conftest import curves, run
 
@@ -160,3 +162,63 @@ def test_the_oldest_releases_are_deleted_and_nothing_else(folders: Folders) -> N
     assert kept() == {names[0], *names[3:]}
     assert (releases / "notes" / "mine.txt").read_text() == "kept"
     assert (releases / "current").readlink() == Path(names[-1])
+
+
+def _made(processed: Path, name: str, published: str | None = None, **files: str) -> Path:
+    """Publish a release of some files, as a run would."""
+    release = Release(processed, published)
+    for file, text in files.items():
+        release.path(f"cards/{file}").write_text(text)
+    return release.publish(name)
+
+
+def test_what_a_killed_run_left_is_cleared_away(tmp_path: Path) -> None:
+    left = tmp_path / "releases" / ".building" / "cards"
+    left.mkdir(parents=True)
+    (left / "half.json").write_text("half")
+    place = _made(tmp_path, "a" * 12, whole="whole")
+    assert [p.name for p in place.rglob("*") if p.is_file()] == ["whole"]
+    assert sorted(p.name for p in (tmp_path / "releases").iterdir()) == ["a" * 12, "current"]
+
+
+def test_outputs_are_taken_over_only_if_each_is_as_it_was(tmp_path: Path) -> None:
+    place = _made(tmp_path, "a" * 12, one="1", two="2")
+    release = Release(tmp_path, listing(place))
+    assert release.keep("cards/one", "cards/two")
+    assert (release.building / "cards/one").samefile(place / "cards/one")
+    release.drop("cards/one", "cards/two", "cards/never", "c" * 300)
+    assert [p for p in release.building.rglob("*") if p.is_file()] == []
+    assert not release.keep("cards/one", "cards/three")
+    (place / "cards/two").chmod(0o644)
+    (place / "cards/two").write_text("3")
+    assert not release.keep("cards/one", "cards/two")
+    assert release.keep("cards/one")
+    assert not Release(tmp_path, None).keep("cards/one")
+
+
+def test_a_release_that_somebody_changed_is_left_as_evidence(tmp_path: Path) -> None:
+    place = _made(tmp_path, "a" * 12, card="right")
+    assert _made(tmp_path, "a" * 12, card="right") == place
+    card = place / "cards/card"
+    before = card.stat()
+    card.chmod(0o644)
+    card.write_text("wrong")  # as long, and as old
+    os.utime(card, ns=(before.st_atime_ns, before.st_mtime_ns))
+    again = _made(tmp_path, "a" * 12, card="right")
+    os.utime(again / "cards/card", ns=(before.st_atime_ns, before.st_mtime_ns))
+    assert again.name == f"{'a' * 12}-2"
+    assert card.read_text() == "wrong"
+    assert (tmp_path / "cards/card").read_text() == "right"
+    assert _made(tmp_path, "a" * 12, card="right") == again
+    assert _made(tmp_path, "a" * 12, card="right", more="") == place.with_name(f"{'a' * 12}-3")
+
+
+def test_three_releases_before_the_current_one_are_kept(tmp_path: Path) -> None:
+    mine = tmp_path / "releases" / "notes"
+    mine.mkdir(parents=True)
+    names = [f"{number:012x}" for number in range(6)]
+    for age, name in enumerate(names):
+        os.utime(_made(tmp_path, name, card=name), ns=(age, age))
+    kept = sorted(p.name for p in (tmp_path / "releases").iterdir())
+    assert kept == [*names[2:], "current", "notes"]
+    assert (tmp_path / "cards/card").read_text() == names[-1]

@@ -1,0 +1,101 @@
+"""The page that ends a run says everything once, and long lists shortly."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from deamat.run import summary
+
+WELL: dict[str, Any] = {
+    "raw": "raw",
+    "campaigns": [
+        {"name": "soft-2026", "synthetic": False, "specimens": 7},
+        {"name": "twin-1", "synthetic": True, "specimens": 3},
+    ],
+    "ignored": [],
+    "files": {"used": 12, "refused": 1, "rejected": 0},
+    "values": 9,
+    "materials": 2,
+    "refused": [],
+    "waiting": [],
+    "rejected": [],
+    "manifest": [],
+    "internal_errors": [],
+    "excluded": [],
+    "warnings": [],
+    "flags": [],
+    "cards": "processed/cards",
+    "release": "0123abcd",
+}
+
+
+def refusal(specimen: str | None, key: str = "tensile_modulus") -> dict[str, Any]:
+    place = {"campaign": "soft-2026", "material": "gel-a", "key": key}
+    return {**place, "specimen": specimen, "reason": "2 samples, 10 are needed"}
+
+
+def test_all_is_well() -> None:
+    assert summary.text(WELL) == (
+        """\
+raw        raw: 2 campaigns, 13 files
+files      12 used, 1 refused, 0 rejected
+values     9 of 2 materials, 0 refused
+SYNTHETIC  twin-1: simulated files, not measurements
+cards      processed/cards, release 0123abcd"""
+    )
+
+
+def test_whatever_went_wrong_is_said_with_its_place() -> None:
+    manifest = {
+        "campaign": "soft-2026",
+        "changed": ["a.csv", "b.csv", "c.csv", "d.csv"],
+        "missing": ["e.csv"],
+        "extra": [],
+    }
+    error = {"stage": "figure", "subject": "soft-2026/moduli", "error": "RuntimeError: burst"}
+    document = {
+        **WELL,
+        "campaigns": WELL["campaigns"][:1],
+        "ignored": ["loose/", "old/"],
+        "refused": [refusal("A1"), refusal("A2"), refusal(None, "tensile_strength")],
+        "waiting": [{"reason": "soft-2026: no technique is called 'dma' yet", "files": 4}],
+        "rejected": [{"reason": "a.csv, line 3: not a number\na.csv, line 5: not a number"}],
+        "manifest": [manifest],
+        "internal_errors": [error],
+        "excluded": [{"path": "soft-2026/x.csv", "reason": "the plate slipped"}],
+        "warnings": ["config/exclusions.toml names y.csv, which is not there"],
+    }
+    assert summary.text(document) == (
+        """\
+raw        raw: 1 campaigns, 13 files
+files      12 used, 1 refused, 0 rejected
+ignored loose/, old/ (no campaign.toml)
+values     9 of 2 materials, 3 refused
+refused    gel-a tensile_modulus (A1 and 1 more): 2 samples, 10 are needed
+refused    gel-a tensile_strength (soft-2026): 2 samples, 10 are needed
+no reader  soft-2026: no technique is called 'dma' yet: 4 files
+REJECTED   a.csv, line 3: not a number
+REJECTED   a.csv, line 5: not a number
+MANIFEST   soft-2026: 4 changed (a.csv, b.csv, c.csv, ...); 1 missing (e.csv); """
+        """look at `deamat register soft-2026`
+INTERNAL   figure soft-2026/moduli (RuntimeError: burst): internal error, all the rest is """
+        """published; traceback in processed/audit/internal_errors.json
+excluded   soft-2026/x.csv: the plate slipped
+warning    config/exclusions.toml names y.csv, which is not there
+cards      processed/cards, release 0123abcd"""
+    )
+    twice = {**document, "internal_errors": [error, error]}
+    assert "(RuntimeError: burst) and 1 more: internal error" in summary.text(twice)
+
+
+def test_twelve_lines_of_a_kind_are_shown_and_the_rest_counted() -> None:
+    for count, shown, last in ((12, 12, "warning    11"), (14, 13, "           ... and 2 more: ")):
+        document = {**WELL, "warnings": [str(number) for number in range(count)]}
+        lines = summary.text(document).splitlines()[3:-2]
+        assert len(lines) == shown
+        assert lines[-1].startswith(last)
+
+
+def test_what_was_redone_is_counted_by_stage() -> None:
+    assert summary.redone({}) == "redone     nothing"
+    assert summary.redone({"measurement": 6, "card": 2}) == "redone     6 measurement, 2 card"
