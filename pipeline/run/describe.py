@@ -9,13 +9,13 @@ from typing import Any, get_args
 
 from deamat.core.ledger import FileEntry, Status
 from deamat.run.flags import listed
-from deamat.run.measure import Bench, Group
+from deamat.run.measure import Group, RunContext
 
 FAILURE = 3  # the exit code of a run with an internal error
 
 
 def describe(
-    bench: Bench,
+    run: RunContext,
     groups: Sequence[Group],
     files: Sequence[FileEntry],
     ignored: Sequence[str],
@@ -25,15 +25,15 @@ def describe(
     summaries = [g.summary for g in groups if g.summary]
     counts = Counter(f.status for f in files)
     return {
-        "exit_code": FAILURE if bench.failures else int(any(f.violates for f in files)),
-        "raw": str(bench.folders.raw),
+        "exit_code": FAILURE if run.failures else int(any(f.violates for f in files)),
+        "raw": str(run.folders.raw),
         "campaigns": [
             {
                 "name": s.campaign.name,
                 "synthetic": s.campaign.info.synthetic,
                 "specimens": len(s.specimens),
             }
-            for s in bench.surveys
+            for s in run.surveys
             if s.campaign
         ],
         "ignored": list(ignored),
@@ -62,16 +62,16 @@ def describe(
         ],
         "manifest": _manifest(files),
         "excluded": [{"path": f.path, "reason": f.reason} for f in files if f.status == "excluded"],
-        "internal_errors": [asdict(failure) for failure in bench.failures],
+        "internal_errors": [asdict(failure) for failure in run.failures],
         "warnings": [
             f"config/exclusions.toml names {e.path}, which is not there"
-            for e in bench.config.exclusions.exclude
+            for e in run.config.exclusions.exclude
             if e.path not in {f.path for f in files}
         ],
-        "redone": [str(r) for r in bench.book.redone],
-        "redone_by_stage": Counter(r.stage for r in bench.book.redone),
+        "redone": [str(r) for r in run.cache.redone],
+        "redone_by_stage": Counter(r.stage for r in run.cache.redone),
         "release": release,
-        "cards": str(bench.folders.processed / "cards"),
+        "cards": str(run.folders.processed / "cards"),
     }
 
 

@@ -12,9 +12,9 @@ from deamat.core.present import readable_conditions
 from deamat.core.records import Condition, Measurement, Summary
 from deamat.core.slug import file_stem, short_slug
 from deamat.report.moduli import is_modulus, modulus_bars
-from deamat.run.book import STALE
 from deamat.run.boundary import attempt, killed
-from deamat.run.measure import Bench, Group
+from deamat.run.build_cache import STALE
+from deamat.run.measure import Group, RunContext
 from deamat.run.work import source_of
 from deamat.techniques import TECHNIQUES
 
@@ -50,15 +50,15 @@ class FigureJob:
 
 
 def figure_jobs(
-    groups: Sequence[Group], bench: Bench
+    groups: Sequence[Group], run: RunContext
 ) -> Iterator[tuple[FigureJob, dict[str, str]]]:
     """List every figure with the components it depends on."""
-    synthetic = {s.campaign.name: s.campaign.info.synthetic for s in bench.surveys if s.campaign}
+    synthetic = {s.campaign.name: s.campaign.info.synthetic for s in run.surveys if s.campaign}
     for g in groups:
         if TECHNIQUES[g.technique].figure is None or not _has_something_to_draw(g):
             continue
         said = readable_conditions(dict(g.conditions)) if g.conditions else ""
-        name = bench.config.name_of(g.material)
+        name = run.config.name_of(g.material)
         title = f"{name}, {g.technique}" + (f", {said}" if said else "")
         job = FigureJob(
             f"{g.campaign}/{_stem(g)}", title, synthetic[g.campaign], g.technique,
@@ -68,7 +68,7 @@ def figure_jobs(
     for campaign in sorted({g.campaign for g in groups}):
         mine = [g for g in groups if g.campaign == campaign and _gives_moduli(g)]
         if any(map(_has_moduli, mine)):
-            names = {g.material: bench.config.name_of(g.material) for g in mine}
+            names = {g.material: run.config.name_of(g.material) for g in mine}
             job = FigureJob(
                 f"{campaign}/moduli", f"Moduli, {campaign}", synthetic[campaign], None, (),
                 tuple(g.summary for g in mine if g.summary), tuple(names.items()),
@@ -113,11 +113,11 @@ def _has_moduli(group: Group) -> bool:
     )
 
 
-def draw_all(jobs: Sequence[FigureJob], folder: Path, bench: Bench) -> Iterator[Failure]:
+def draw_all(jobs: Sequence[FigureJob], folder: Path, run: RunContext) -> Iterator[Failure]:
     """Draw figures into a folder; give what went wrong."""
-    drawn = bench.workers.map(partial(_attempt, folder), jobs, _lost)
+    drawn = run.workers.map(partial(_attempt, folder), jobs, _lost)
     for done, failure in enumerate(drawn, start=1):
-        bench.progress("figures", done, len(jobs))
+        run.progress("figures", done, len(jobs))
         if failure is not None:
             yield failure
 

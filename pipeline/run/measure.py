@@ -15,8 +15,8 @@ from deamat.core.properties import REFERENCE_AGE
 from deamat.core.quantity import Quantity
 from deamat.core.records import Condition, Law, Measurement, PropertyRecord, Specimen, Summary
 from deamat.core.technique import AnyTechnique, Context
-from deamat.run.book import STALE, Book, digest, key_of
 from deamat.run.boundary import FAILED, attempt
+from deamat.run.build_cache import STALE, BuildCache, digest, key_of
 from deamat.run.folders import Folders
 from deamat.run.stages import Stages
 from deamat.run.survey import Survey
@@ -67,7 +67,7 @@ class Group:
 
 
 @dataclass
-class Bench:
+class RunContext:
     """What measuring needs at hand.
 
     Parameters
@@ -82,7 +82,7 @@ class Bench:
     config: Config
     stages: Stages
     surveys: Sequence[Survey]
-    book: Book
+    cache: BuildCache
     workers: Workers
     progress: Progress
     dry: bool
@@ -95,7 +95,7 @@ class Bench:
     def fail(self, failure: Failure) -> str:
         """Note an internal error; returns what stands for the key of the thing not made."""
         self.failures.append(failure)
-        self.book.drop(failure.stage, failure.subject)
+        self.cache.drop(failure.stage, failure.subject)
         return FAILED
 
     def sure(self, entries: Iterable[E]) -> list[E]:
@@ -114,30 +114,32 @@ def in_order(techniques: Mapping[str, AnyTechnique]) -> list[AnyTechnique]:
     return [techniques[key] for key in TopologicalSorter(graph).static_order()]
 
 
-def measure(technique: AnyTechnique, bench: Bench) -> list[Measured]:
+def measure(technique: AnyTechnique, run: RunContext) -> list[Measured]:
     """Measure every specimen of one technique; only what is stale is read again."""
-    tasks = list(_tasks(technique, bench))
-    fresh = [bench.book.fresh("measurement", s, parts) for s, parts, _ in tasks]
+    tasks = list(_tasks(technique, run))
+    fresh = [run.cache.fresh("measurement", s, parts) for s, parts, _ in tasks]
     stale = [task for (_, _, task), good in zip(tasks, fresh, strict=True) if not good]
-    made = iter(() if bench.dry else _run(technique, stale, bench))
+    made = iter(() if run.dry else _run(technique, stale, run))
     measured = []
     for (subject, parts, task), good in zip(tasks, fresh, strict=True):
         if good:
-            reduced = bench.book.result("measurement", subject)
+            reduced = run.cache.result("measurement", subject)
             measured.append(Measured(task.specimen, key_of(parts), reduced))
-        elif bench.dry:
+        elif run.dry:
             measured.append(Measured(task.specimen, STALE, None))
         else:
             reduced = next(made)
             if isinstance(reduced, Failure):
-                measured.append(Measured(task.specimen, bench.fail(reduced), None, reduced))
+                measured.append(Measured(task.specimen, run.fail(reduced), None, reduced))
                 continue
-            key = bench.book.keep("measurement", subject, parts, reduced)
+            key = run.cache.keep("measurement", subject, parts, reduced)
             measured.append(Measured(task.specimen, key, reduced))
     return measured
 
 
-def summarise(technique: AnyTechnique, measured: Sequence[Measured], bench: Bench) -> list[Group]:
+def summarise(
+    technique: AnyTechnique, measured: Sequence[Measured], run: RunContext
+) -> list[Group]:
     """Summarise each group of specimens; only what is stale is computed again."""
     groups: dict[tuple[str, str, tuple[tuple[str, Condition], ...]], list[Measured]] = {}
     for one in measured:
@@ -145,42 +147,42 @@ def summarise(technique: AnyTechnique, measured: Sequence[Measured], bench: Benc
         conditions = tuple(sorted(s.conditions.items()))
         groups.setdefault((s.campaign, s.material, conditions), []).append(one)
     result = []
-    config = bench.config.methods[technique.key]
+    config = run.config.methods[technique.key]
     for (campaign, material, conditions), members in sorted(groups.items(), key=lambda g: repr(g)):
         good = tuple(m.reduced.measurement for m in members if m.reduced and m.reduced.measurement)
         bare = Group(campaign, material, technique.key, conditions, "", good, None)
         parts = {
-            **bench.stages.parts(f"summary {technique.key}"),
+            **run.stages.parts(f"summary {technique.key}"),
             "config": config_digest(config),
             **{f"specimen {m.specimen.id}": m.key for m in members},
         }
         place = (campaign, material)
-        given = bench.laws.get(place, [])
+        given = run.laws.get(place, [])
         laws = _laws(technique, given)
-        if bench.awaits(place, technique) or _laws(technique, bench.sure(given)) != laws:
+        if run.awaits(place, technique) or _laws(technique, run.sure(given)) != laws:
             parts["laws"] = STALE
         elif laws:
             parts["laws"] = digest(sorted(laws.items()))
-        if bench.book.fresh("summary", bare.subject, parts):
-            summary = bench.book.result("summary", bare.subject)
+        if run.cache.fresh("summary", bare.subject, parts):
+            summary = run.cache.result("summary", bare.subject)
             key = key_of(parts)
-        elif bench.dry:
-            summary, key = bench.book.earlier("summary", bare.subject, parts), STALE
+        elif run.dry:
+            summary, key = run.cache.earlier("summary", bare.subject, parts), STALE
             if summary:
-                bench.stale += [*summary.records, *summary.laws]
+                run.stale += [*summary.records, *summary.laws]
             else:
-                bench.unmade |= {(*place, property_) for property_ in technique.yields}
+                run.unmade |= {(*place, property_) for property_ in technique.yields}
         else:
             context = Context(config, Machine(), {}, laws=laws)
             made = _summary(technique, bare, context) if good else None
             if isinstance(made, Failure):
-                summary, key = None, bench.fail(made)
+                summary, key = None, run.fail(made)
             else:
-                summary, key = made, bench.book.keep("summary", bare.subject, parts, made)
+                summary, key = made, run.cache.keep("summary", bare.subject, parts, made)
         result.append(Group(campaign, material, technique.key, conditions, key, good, summary))
         if summary:
-            bench.records.setdefault(place, []).extend(summary.records)
-            bench.laws.setdefault(place, []).extend(summary.laws)
+            run.records.setdefault(place, []).extend(summary.records)
+            run.laws.setdefault(place, []).extend(summary.laws)
     return result
 
 
@@ -197,23 +199,23 @@ def _laws(technique: AnyTechnique, laws: Sequence[Law]) -> dict[str, Law]:
     return {key: mine[0] for key, mine in found.items() if len(mine) == 1}
 
 
-def _tasks(technique: AnyTechnique, bench: Bench) -> Iterator[tuple[str, dict[str, str], Task]]:
+def _tasks(technique: AnyTechnique, run: RunContext) -> Iterator[tuple[str, dict[str, str], Task]]:
     """Every specimen of a technique with the components its measurement depends on."""
-    config = bench.config.methods[technique.key]
-    for survey in bench.surveys:
+    config = run.config.methods[technique.key]
+    for survey in run.surveys:
         for specimen in survey.specimens:
             if specimen.technique != technique.key or survey.campaign is None:
                 continue
             entry = survey.entries[specimen.file] if specimen.file else None
-            name, machine = bench.config.instruments.machine(specimen.notes.get("instrument", ""))
+            name, machine = run.config.instruments.machine(specimen.notes.get("instrument", ""))
             place = (specimen.campaign, specimen.material)
-            given = bench.records.get(place, [])
+            given = run.records.get(place, [])
             found = needs_met(technique, specimen, given)
-            sure = needs_met(technique, specimen, bench.sure(given))
-            awaited = bench.awaits(place, technique) or sure != found
+            sure = needs_met(technique, specimen, run.sure(given))
+            awaited = run.awaits(place, technique) or sure != found
             info = survey.campaign.info
             task = Task(
-                bench.folders.raw, specimen, Context(config, machine, found, info.timezone),
+                run.folders.raw, specimen, Context(config, machine, found, info.timezone),
                 entry.sha256 if entry else None,
                 changed=entry is not None and entry.manifest == "changed",
                 registered=entry is None or entry.manifest != "extra",
@@ -226,7 +228,7 @@ def _tasks(technique: AnyTechnique, bench: Bench) -> Iterator[tuple[str, dict[st
                 "instrument": f"{name}:{config_digest(machine)}",
                 "campaign": digest((info.ends_open, info.timezone, survey.stated_units)),
                 "needs": STALE if awaited else digest(sorted(found.items())),
-                **bench.stages.parts(f"measurement {technique.key}"),
+                **run.stages.parts(f"measurement {technique.key}"),
             }  # fmt: skip
             if entry:
                 parts["file"] = entry.sha256
@@ -253,11 +255,11 @@ def _needed(key: str, specimen: Specimen, records: Sequence[PropertyRecord]) -> 
 
 
 def _run(
-    technique: AnyTechnique, tasks: Sequence[Task], bench: Bench
+    technique: AnyTechnique, tasks: Sequence[Task], run: RunContext
 ) -> Iterator[Reduced | Failure]:
     """Work through the tasks, in this process where they are few."""
-    bench.progress(technique.key, 0, len(tasks))
-    results = bench.workers.map(attempt_one, tasks, lost, FILES_PER_TASK)
+    run.progress(technique.key, 0, len(tasks))
+    results = run.workers.map(attempt_one, tasks, lost, FILES_PER_TASK)
     for done, reduced in enumerate(results, start=1):
-        bench.progress(technique.key, done, len(tasks))
+        run.progress(technique.key, done, len(tasks))
         yield reduced

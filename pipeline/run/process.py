@@ -18,12 +18,12 @@ from deamat.core.config import Config, load_config
 from deamat.core.errors import ConfigError
 from deamat.core.ledger import Failure, FileEntry, Provenance
 from deamat.core.slug import Spellings
-from deamat.run.book import Book, key_of
 from deamat.run.boundary import attempt
+from deamat.run.build_cache import BuildCache, key_of
 from deamat.run.contents import contents_id
 from deamat.run.describe import describe
 from deamat.run.folders import Folders, Input, Stat, locate, name_as_text
-from deamat.run.measure import Bench, Group, Measured, Progress, in_order, measure, summarise
+from deamat.run.measure import Group, Measured, Progress, RunContext, in_order, measure, summarise
 from deamat.run.publish import publish
 from deamat.run.published import listing
 from deamat.run.release import Release
@@ -87,30 +87,32 @@ def process(
     hashes = {path: one.sha256 for path, one in inputs.items()}
     config = load_config(folders.config, {t.key: t.config for t in TECHNIQUES.values()})
     surveys, broken, ignored = look_at_raw(folders, inputs, config)
-    book = Book(state)
+    cache = BuildCache(state)
     stages = find_stages(TECHNIQUES, hashes, state)
     with Workers(workers) as pool:
-        bench = Bench(folders, config, stages, surveys, book, pool, progress, dry, failures=broken)
+        run = RunContext(
+            folders, config, stages, surveys, cache, pool, progress, dry, failures=broken
+        )
         groups: list[Group] = []
         measured: list[Measured] = []
         for technique in in_order(TECHNIQUES):
-            mine = measure(technique, bench)
+            mine = measure(technique, run)
             measured += mine
-            groups += summarise(technique, mine, bench)
+            groups += summarise(technique, mine, run)
         files = _account(surveys, measured)
         provenance = _provenance(config, stages, hashes)
         if dry:
-            publish(groups, files, provenance, bench, None)
-            book.close()
-            return {"redone": [str(r) for r in book.redone]}
+            publish(groups, files, provenance, run, None)
+            cache.close()
+            return {"redone": [str(r) for r in cache.redone]}
         state.commit()  # measurements hold whatever becomes of the release
         release = Release(folders.processed, state.read_note("published"))
-        publish(groups, files, provenance, bench, release)
-        book.close()
+        publish(groups, files, provenance, run, release)
+        cache.close()
         name = contents_id(release.building)
         place = release.publish(name)
         state.aside += release.aside
-    document = describe(bench, groups, files, ignored, name)
+    document = describe(run, groups, files, ignored, name)
     state.remember_inputs(seen, inputs)
     state.note("published", listing(place))
     return document

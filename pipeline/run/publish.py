@@ -13,20 +13,20 @@ from deamat.core.ledger import Failure, FileEntry, Provenance
 from deamat.materials.card import Credit, MaterialCard
 from deamat.materials.curves import write_curves
 from deamat.materials.database import write_database
-from deamat.run.book import STALE, Redo, digest, key_of
 from deamat.run.boundary import FAILED, attempt
+from deamat.run.build_cache import STALE, Redo, digest, key_of
 from deamat.run.draw import FigureJob, draw_all, figure_jobs
-from deamat.run.measure import Bench, Group
+from deamat.run.measure import Group, RunContext
 from deamat.run.release import Release
 
 T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
-class Press:
+class Publisher:
     """Makes one output at a time, or takes it over from the release before."""
 
-    bench: Bench
+    run: RunContext
     release: Release | None  # None in a dry run
 
     def make(
@@ -46,41 +46,41 @@ class Press:
         parts : what the files are made from, beside the code of the stage
         write : makes them, and says what failed on the way; what it raises is a failure as well
         rests_on : raw files, to be named if it fails
-        runs : the stage's name among `bench.stages` where it is not `stage`
+        runs : the stage's name among `run.stages` where it is not `stage`
         """
-        parts = {**parts, **self.bench.stages.parts(runs or stage)}
-        fresh = self.bench.book.fresh(stage, subject, parts)
+        parts = {**parts, **self.run.stages.parts(runs or stage)}
+        fresh = self.run.cache.fresh(stage, subject, parts)
         if self.release is None:
             return key_of(parts) if fresh else STALE
         if fresh:
             if self.release.keep(*names):
                 return key_of(parts)
-            self.bench.book.redone.append(Redo(stage, subject, "its output was changed"))
+            self.run.cache.redone.append(Redo(stage, subject, "its output was changed"))
         failures = attempt(stage, subject, rests_on, partial(write, self.release))
         if isinstance(failures, Failure):
             self.release.drop(*names)
             failures = [failures]
         for failure in failures:
-            self.bench.fail(failure)
+            self.run.fail(failure)
         if failures:
-            self.bench.book.drop(stage, subject)
+            self.run.cache.drop(stage, subject)
             return FAILED
-        return self.bench.book.keep(stage, subject, parts, None)
+        return self.run.cache.keep(stage, subject, parts, None)
 
 
 def publish(
     groups: Sequence[Group],
     files: Sequence[FileEntry],
     provenance: Provenance,
-    bench: Bench,
+    run: RunContext,
     release: Release | None,
 ) -> None:
     """Write everything that is published; what did not change is kept from the release before."""
-    press = Press(bench, release)
-    cards, keys = _cards(groups, press)
-    _figures(groups, press)
-    simulated = {s.campaign.name for s in bench.surveys if s.campaign and s.campaign.info.synthetic}
-    press.make(
+    publisher = Publisher(run, release)
+    cards, keys = _cards(groups, publisher)
+    _figures(groups, publisher)
+    simulated = {s.campaign.name for s in run.surveys if s.campaign and s.campaign.info.synthetic}
+    publisher.make(
         "curves", "curves.h5",
         {**{g.subject: g.key for g in groups}, "synthetic": ", ".join(sorted(simulated))},
         ["curves.h5"],
@@ -92,29 +92,29 @@ def publish(
             ),
         ),
     )  # fmt: skip
-    press.make(
+    publisher.make(
         "database", "materials.sqlite",
         {
             **keys, "files": digest(tuple(files)), "provenance": digest(provenance),
-            "failures": digest(tuple(bench.failures)),
+            "failures": digest(tuple(run.failures)),
         },
         ["materials.sqlite"],
         lambda r: all_but_culprits(
             "database", {card.material: (card, _files_of(card)) for card in cards},
             lambda some: write_database(
-                r.path("materials.sqlite"), some, files, provenance, bench.failures
+                r.path("materials.sqlite"), some, files, provenance, run.failures
             ),
         ),
     )  # fmt: skip
-    press.make(
+    publisher.make(
         "audit", "files.json", {"files": digest(tuple(files))}, ["audit/files.json"],
         lambda r: _write(r.path("audit/files.json"), _as_json(files)),
     )  # fmt: skip
-    if bench.failures:  # last: it tells of all the others
-        press.make(
-            "audit", "internal_errors.json", {"failures": digest(tuple(bench.failures))},
+    if run.failures:  # last: it tells of all the others
+        publisher.make(
+            "audit", "internal_errors.json", {"failures": digest(tuple(run.failures))},
             ["audit/internal_errors.json"],
-            lambda r: _write(r.path("audit/internal_errors.json"), _as_json(bench.failures)),
+            lambda r: _write(r.path("audit/internal_errors.json"), _as_json(run.failures)),
         )  # fmt: skip
 
 
@@ -143,7 +143,9 @@ def all_but_culprits(
     return failures
 
 
-def _cards(groups: Sequence[Group], press: Press) -> tuple[list[MaterialCard], dict[str, str]]:
+def _cards(
+    groups: Sequence[Group], publisher: Publisher
+) -> tuple[list[MaterialCard], dict[str, str]]:
     """Make the card of each material; returns those that could be made, and the key of each."""
     by_material: dict[str, list[Group]] = {}
     for group in groups:
@@ -152,11 +154,11 @@ def _cards(groups: Sequence[Group], press: Press) -> tuple[list[MaterialCard], d
     keys: dict[str, str] = {}
     for done, (material, mine) in enumerate(sorted(by_material.items()), start=1):
         files = tuple(dict.fromkeys(file for g in mine for file in g.files))
-        card = attempt("card", material, files, partial(_card, material, mine, press.bench))
+        card = attempt("card", material, files, partial(_card, material, mine, publisher.run))
         if isinstance(card, Failure):
-            key = press.bench.fail(card)
+            key = publisher.run.fail(card)
         else:
-            key = press.make(
+            key = publisher.make(
                 "card",
                 material,
                 _card_parts(card, mine),
@@ -167,7 +169,7 @@ def _cards(groups: Sequence[Group], press: Press) -> tuple[list[MaterialCard], d
             if key != FAILED:
                 cards.append(card)
         keys[f"card {material}"] = key
-        press.bench.progress("cards", done, len(by_material))
+        publisher.run.progress("cards", done, len(by_material))
     return cards, keys
 
 
@@ -177,8 +179,8 @@ def _files_of(card: MaterialCard) -> tuple[str, ...]:
     return tuple(dict.fromkeys(o.path or o.register for o in origins))
 
 
-def _card(material: str, groups: Sequence[Group], bench: Bench) -> MaterialCard:
-    infos = {s.campaign.name: s.campaign.info for s in bench.surveys if s.campaign}
+def _card(material: str, groups: Sequence[Group], run: RunContext) -> MaterialCard:
+    infos = {s.campaign.name: s.campaign.info for s in run.surveys if s.campaign}
     campaigns = sorted({g.campaign for g in groups if g.summary} or {g.campaign for g in groups})
     credits_ = tuple(
         Credit(c, i.title, i.laboratory, i.licence, i.source, i.synthetic)
@@ -187,7 +189,7 @@ def _card(material: str, groups: Sequence[Group], bench: Bench) -> MaterialCard:
     summaries = [g.summary for g in groups if g.summary]
     return MaterialCard(
         material=material,
-        name=bench.config.name_of(material),
+        name=run.config.name_of(material),
         synthetic=any(c.synthetic for c in credits_),
         records=tuple(r for s in summaries for r in s.records),
         laws=tuple(law for s in summaries for law in s.laws),
@@ -219,17 +221,17 @@ def _write(path: Path, data: bytes) -> Sequence[Failure]:
     return ()
 
 
-def _figures(groups: Sequence[Group], press: Press) -> None:
+def _figures(groups: Sequence[Group], publisher: Publisher) -> None:
     """Draw the figures that are stale, in parallel where there are many."""
     stale: list[FigureJob] = []
-    for job, parts in figure_jobs(groups, press.bench):
+    for job, parts in figure_jobs(groups, publisher.run):
         runs = "figure" if job.technique is None else f"figure {job.technique}"
-        press.make("figure", job.name, parts, job.files, partial(_later, stale, job), runs=runs)
-    if press.release is not None and stale:
+        publisher.make("figure", job.name, parts, job.files, partial(_later, stale, job), runs=runs)
+    if publisher.release is not None and stale:
         files = {job.name: job.files for job in stale}
-        for failure in draw_all(stale, press.release.path("figures"), press.bench):
-            press.bench.fail(failure)
-            press.release.drop(*files[failure.subject])
+        for failure in draw_all(stale, publisher.release.path("figures"), publisher.run):
+            publisher.run.fail(failure)
+            publisher.release.drop(*files[failure.subject])
 
 
 def _later(stale: list[FigureJob], job: FigureJob, release: Release) -> Sequence[Failure]:

@@ -11,7 +11,7 @@ from typing import Any
 
 from deamat.core.fingerprint import Fingerprint, Sources
 from deamat.core.technique import AnyTechnique
-from deamat.run.book import digest, key_of
+from deamat.run.build_cache import digest, key_of
 from deamat.run.environment import installed
 from deamat.run.state import State
 

@@ -37,7 +37,7 @@ def key_of(components: Mapping[str, str]) -> str:
 
 
 @dataclass
-class Book:
+class BuildCache:
     """The account of one run: asked for every subject of every stage, in their order."""
 
     state: State
