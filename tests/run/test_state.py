@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from deamat.core.errors import ConfigError
-from deamat.run.book import STALE, Book, digest, key_of
+from deamat.run.build_cache import STALE, BuildCache, digest, key_of
 from deamat.run.folders import Input, Stat
 from deamat.run.state import State
 
@@ -84,37 +84,37 @@ def test_inputs_are_unchanged_only_if_each_is_as_it_was(tmp_path: Path) -> None:
 def test_a_subject_is_fresh_only_from_the_same_components(tmp_path: Path) -> None:
     parts = {"code": "c1", "file": "f1"}
     with State(tmp_path) as state:
-        book = Book(state)
-        assert not book.fresh("card", "gel-a", parts)
-        assert book.keep("card", "gel-a", parts, {"value": 3}) == key_of(parts)
-        book.close()
-        assert [str(one) for one in book.redone] == ["card gel-a: new"]
+        cache = BuildCache(state)
+        assert not cache.fresh("card", "gel-a", parts)
+        assert cache.keep("card", "gel-a", parts, {"value": 3}) == key_of(parts)
+        cache.close()
+        assert [str(one) for one in cache.redone] == ["card gel-a: new"]
     with State(tmp_path) as state:
-        book = Book(state)
-        assert book.fresh("card", "gel-a", dict(reversed(parts.items())))
-        assert book.result("card", "gel-a") == {"value": 3}
-        assert book.earlier("card", "gel-a", {"code": "c1", "file": "f2"}) == {"value": 3}
-        assert book.earlier("card", "gel-a", {**parts, "code": "c2"}) is None
-        assert book.earlier("card", "gel-b", parts) is None
-        assert book.redone == []
-        assert not book.fresh("card", "gel-a", {"code": "c2", "law": STALE, "age": "a"})
-        assert str(book.redone[0]) == (
+        cache = BuildCache(state)
+        assert cache.fresh("card", "gel-a", dict(reversed(parts.items())))
+        assert cache.result("card", "gel-a") == {"value": 3}
+        assert cache.earlier("card", "gel-a", {"code": "c1", "file": "f2"}) == {"value": 3}
+        assert cache.earlier("card", "gel-a", {**parts, "code": "c2"}) is None
+        assert cache.earlier("card", "gel-b", parts) is None
+        assert cache.redone == []
+        assert not cache.fresh("card", "gel-a", {"code": "c2", "law": STALE, "age": "a"})
+        assert str(cache.redone[0]) == (
             "card gel-a: age is new, code changed, file is gone, law is new"
         )
-        assert not book.fresh("card", "gel-a", {**parts, "file": STALE})
-        assert str(book.redone[1]) == "card gel-a: file is redone"
+        assert not cache.fresh("card", "gel-a", {**parts, "file": STALE})
+        assert str(cache.redone[1]) == "card gel-a: file is redone"
 
 
 def test_what_nobody_asks_for_any_more_is_forgotten_and_told(tmp_path: Path) -> None:
     parts = {"code": "c1"}
     with State(tmp_path) as state:
         for stage, subject in (("card", "gel-a"), ("card", "gel-b"), ("figure", "moduli")):
-            Book(state).keep(stage, subject, parts, None)
+            BuildCache(state).keep(stage, subject, parts, None)
     with State(tmp_path) as state:
-        book = Book(state)
-        assert book.fresh("card", "gel-a", parts)
-        book.close()
-        assert sorted(map(str, book.redone)) == [
+        cache = BuildCache(state)
+        assert cache.fresh("card", "gel-a", parts)
+        cache.close()
+        assert sorted(map(str, cache.redone)) == [
             "card gel-b: its source is gone",
             "figure moduli: its source is gone",
         ]
@@ -125,9 +125,9 @@ def test_what_nobody_asks_for_any_more_is_forgotten_and_told(tmp_path: Path) -> 
 def test_a_failed_subject_is_made_again(tmp_path: Path) -> None:
     parts = {"code": "c1"}
     with State(tmp_path) as state:
-        Book(state).keep("card", "gel-a", parts, None)
-        Book(state).drop("card", "gel-a")
-        assert not Book(state).fresh("card", "gel-a", parts)
+        BuildCache(state).keep("card", "gel-a", parts, None)
+        BuildCache(state).drop("card", "gel-a")
+        assert not BuildCache(state).fresh("card", "gel-a", parts)
 
 
 def test_keys_tell_contents_apart_and_nothing_else() -> None:
