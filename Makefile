@@ -37,7 +37,8 @@ stability: $(VENV)/.dev  ## map where estimators hold, flag, refuse or are silen
 	@$(BIN)/python -m benchmarks.stability
 
 mutants: $(VENV)/.dev  ## put 150 slips into each of three packages: how many do the tests notice?
-	@$(BIN)/python -m benchmarks.mutation estimators materials run --sample 150 --seed 1
+	@$(BIN)/python -m benchmarks.mutation estimators materials
+	@$(BIN)/python -m benchmarks.mutation run --tests tests/run tests/test_cli.py tests/test_cli_design.py
 
 docs: $(VENV)/.dev  ## write docs/benchmarks.md, reading-speed.md and the pictures of docs/methods anew
 	@$(BIN)/python -m benchmarks.chart --docs && $(BIN)/python -m benchmarks.stability --docs

@@ -32,7 +32,7 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="at a time")
     parser.add_argument("--at-least", type=float, default=85.0, help="percent killed, or exit 1")
     parser.add_argument(
-        "--tests", nargs="+", metavar="FOLDER", help="that judge (default: tests/PACKAGE alone)"
+        "--tests", nargs="+", metavar="PLACE", help="that judge (default: tests/PACKAGE alone)"
     )
     asked = parser.parse_args()
     reasons = reasons_in(REASONS.read_text(encoding="utf-8"))

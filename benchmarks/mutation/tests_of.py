@@ -65,7 +65,7 @@ def measured(
     root = folder.parent
     told: list[Path] = []
     waiting: list[tuple[str, Path]] = []
-    for path in sorted({path for one in tests for path in (root / one).rglob("test_*.py")}):
+    for path in sorted({path for one in tests for path in _test_files(root / one)}):
         name = str(path.relative_to(root))
         known = cache / code / f"{digest([path, root / 'tests/conftest.py'], name)}.json"
         told.append(known)
@@ -85,6 +85,10 @@ def measured(
         for block, tests in noted["blocks"].items():
             hits.tests[block] |= set(tests)
     return hits
+
+
+def _test_files(place: Path) -> list[Path]:
+    return [place] if place.is_file() else list(place.rglob("test_*.py"))
 
 
 def importers_of(folder: Path, package: str) -> dict[str, set[str]]:
