@@ -11,6 +11,8 @@ from scipy.special import stdtrit
 
 from deamat.core.errors import FitRefused
 
+_NOT_TOLD_FROM_ZERO = 3.0  # half widths of an interval over its value
+
 
 @dataclass(frozen=True, slots=True)
 class Mean:
@@ -95,7 +97,8 @@ def positive_interval(mean: Mean) -> tuple[float, float]:
     r"""Return the 95 % interval of a positive quantity: on a log scale where zero is near.
 
     $m \, e^{\pm h/m}$ with the half width h where $m - h \le 0$, else the symmetric interval: an
-    interval that includes zero says nothing of a modulus, a strength or a permittivity.
+    interval that includes zero says nothing of a modulus, a strength or a permittivity. Beyond
+    $h = 3 m$ the value is not told from zero, and the symmetric interval is cut off there.
 
     Parameters
     ----------
@@ -104,8 +107,10 @@ def positive_interval(mean: Mean) -> tuple[float, float]:
     low, high = mean.ci95
     if low > 0.0 or mean.value <= 0.0:
         return low, high
-    factor = math.exp(min((high - mean.value) / mean.value, 700.0))
-    return mean.value / factor, mean.value * factor
+    relative = (high - mean.value) / mean.value
+    if relative > _NOT_TOLD_FROM_ZERO:
+        return 0.0, high
+    return mean.value * math.exp(-relative), mean.value * math.exp(relative)
 
 
 def outliers(values: Sequence[float], significance: float = 0.01) -> tuple[int, ...]:

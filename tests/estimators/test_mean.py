@@ -9,7 +9,12 @@ import numpy as np
 import pytest
 
 from deamat.core.errors import FitRefused
-from deamat.estimators.mean import coverage_factor, mean_with_shared, outliers
+from deamat.estimators.mean import (
+    coverage_factor,
+    mean_with_shared,
+    outliers,
+    positive_interval,
+)
 
 
 @pytest.mark.parametrize(
@@ -105,3 +110,15 @@ def test_one_clean_sample_in_a_hundred_is_accused() -> None:
     rng = np.random.default_rng(5)
     accused = sum(bool(outliers(list(rng.normal(size=8)))) for _ in range(4000))
     assert 0.006 < accused / 4000 < 0.014
+
+
+def test_intervals_of_positive_quantities_do_not_cross_zero() -> None:
+    far = mean_with_shared([1.0, 1.02], 0.0, 0.0)
+    assert positive_interval(far) == far.ci95
+    near = mean_with_shared([0.8, 1.2], 0.0, 0.0)  # Student's t for two values is 12.7
+    half = near.ci95[1] - 1.0
+    assert near.ci95[0] < 0.0
+    assert positive_interval(near) == pytest.approx((math.exp(-half), math.exp(half)))
+    lost = mean_with_shared([0.1, 0.9], 0.0, 0.0)
+    assert positive_interval(lost) == (0.0, lost.ci95[1])
+    assert positive_interval(mean_with_shared([-1.0, -2.0], 0.0, 0.0))[0] < 0.0
