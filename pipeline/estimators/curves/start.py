@@ -17,6 +17,7 @@ _MOVED = 0.5  # of a step of the moving machine: a displacement that changes by 
 _GRIPPED = 0.05  # of the greatest stress: a load that changes by more during a hold is a grip's
 _EARLY = 0.1  # of the travel over which the first stiffness is judged
 _FEWEST = 5
+_AT_ONCE = 20
 _UNLOADED = 0.2  # of the stress that a position would mean: below it the position is no strain
 _STRAINED = 0.5  # above it the position is a strain
 _NOTICED = 1e-3  # strain: less is the dead path of a machine and moves no modulus by a tenth
@@ -45,6 +46,9 @@ def find_hold(strain: FloatArray, stress: FloatArray) -> Hold:
     ----------
     strain, stress : of the whole recording, loading positive, shape (n,) `[1]`, `[Pa]`
     """
+    few = min(_AT_ONCE, strain.size - 1)
+    if few > 0 and abs(strain[1] - strain[0]) > 0.25 * abs(strain[few] - strain[0]) / few > 0.0:
+        return Hold(0, 0.0, False)  # it moves from the first sample on, as most records do
     steps = np.abs(np.diff(strain))
     steps = steps[steps > 0.0]
     step = float(np.quantile(steps, 0.25)) if steps.size else 0.0
@@ -157,8 +161,11 @@ def zero_of_load(stress: FloatArray, hold: int, broken_at: int | None) -> LoadZe
     -------
     None where the load starts at zero within its noise or 0.5 % of its greatest value
     """
-    before = float(np.median(stress[: hold + 1]))
-    limit = max(0.005 * float(stress.max()), 4.0 * _noise(stress[: max(hold + 1, 12)]))
+    before = float(stress[0] if hold == 0 else np.median(stress[: hold + 1]))
+    greatest = float(stress.max())
+    if abs(before) <= 0.005 * greatest:
+        return None
+    limit = max(0.005 * greatest, 4.0 * _noise(stress[: max(hold + 1, 12)]))
     if abs(before) <= limit:
         return None
     after = None if broken_at is None else float(np.median(stress[broken_at:]))
