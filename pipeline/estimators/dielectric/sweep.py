@@ -23,11 +23,13 @@ class Position:
     indices : of the points, in the order of the sweep, shape (k,)
     weights : of these points, adding up to 1, shape (k,)
     interpolated : between two neighbours rather than measured
+    extrapolated : beyond the last of its neighbours
     """
 
     indices: NDArray[np.intp]
     weights: FloatArray
     interpolated: bool
+    extrapolated: bool = False
 
     def of(self, values: FloatArray) -> float:
         """Return the value of a column (n,) at this position."""
@@ -64,8 +66,7 @@ def position(
             else "no point is left"
         )
         raise FitRefused(
-            f"{target_Hz:g} Hz is not measured: {span}, and nothing is extrapolated; measure at "
-            f"{target_Hz:g} Hz (+- {100 * tolerance:g} %)",
+            f"{target_Hz:g} Hz is not measured: {span}, and nothing is extrapolated",
             {"points": int(frequency_Hz.size)},
         )
     low, high = float(below.max()), float(above.min())
@@ -84,6 +85,28 @@ def position(
         np.concatenate([np.full(points.size, part / points.size) for points, part in pairs]),
         interpolated=True,
     )
+
+
+def beyond_end(frequency_Hz: FloatArray, target_Hz: float, reach_decades: float) -> Position | None:
+    """Continue a sweep over a gap at its end by a line over log f through the nearest points.
+
+    Parameters
+    ----------
+    frequency_Hz : rising, shape (n,)
+    target_Hz : below or above all of them
+    reach_decades : farthest that the line is trusted
+
+    Returns
+    -------
+    None where it would reach farther, or where fewer than four points tell it
+    """
+    order = np.argsort(np.abs(np.log(frequency_Hz / target_Hz)), kind="stable")[:_FEWEST]
+    x = np.log10(frequency_Hz[order] / target_Hz)
+    centred = x - x.mean()
+    if order.size < _FEWEST or not centred.any() or abs(x[0]) > reach_decades:
+        return None
+    weights = 1.0 / x.size - x.mean() * centred / float(centred @ centred)
+    return Position(order, weights, interpolated=False, extrapolated=True)
 
 
 def slope_per_decade(

@@ -29,6 +29,32 @@ class PermittivityConfig(Declared):
     stated_frequencies_Hz: tuple[float, ...] = Field(
         default=(10.0, 100.0, 1e3, 1e4), description="where the dependence on f is stated"
     )
+    repeat_tolerance: float = Field(
+        default=0.002, gt=0, description="relative, within which repeated readings are the same"
+    )
+    max_drift: float = Field(
+        default=0.05,
+        gt=0,
+        lt=1,
+        description="relative, between sweeps or repeated readings, beyond which a film is refused",
+    )
+    max_step: float = Field(
+        default=0.1, gt=0, lt=1, description="step of the capacitance beyond which it is refused"
+    )
+    widest_extrapolation_decades: float = Field(
+        default=0.35, ge=0, description="how far neighbours stand in for an outlying end point"
+    )
+    polarisation_flag: float = Field(
+        default=0.02,
+        gt=0,
+        description="rise by electrode polarisation, beyond the meter's limit, that is flagged",
+    )
+    max_polarisation: float = Field(
+        default=0.05, gt=0, description="rise beyond which there is no value at that frequency"
+    )
+    polarisation_over: float = Field(
+        default=0.01, gt=0, description="rise below which a higher frequency is sound"
+    )
     min_points: int = Field(default=5, ge=4, description="fewest usable points of a sweep")
     level_V: float = Field(
         default=1.0, gt=0, description="test level where the file does not say it"

@@ -26,7 +26,9 @@ from deamat.estimators.dielectric.sweep import (
     series_resistance,
     slope_per_decade,
 )
+from deamat.techniques.permittivity.card_point import CardPoint, card_point
 from deamat.techniques.permittivity.config import LOSS, PERMITTIVITY, PermittivityConfig
+from deamat.techniques.permittivity.faults import conduction_flags
 from deamat.techniques.permittivity.film import Film, film_flags, film_of
 from deamat.techniques.permittivity.result import Dependence, FilmSpectrum
 from deamat.techniques.permittivity.spectrum import Spectrum, permittivity_of, spectrum_of
@@ -42,21 +44,30 @@ class Reading:
 
     Parameters
     ----------
+    point : the card's frequency in the spectrum, and what the sweep's faults do there
     permittivity, loss : of the film at every point of the spectrum, shape (n,) each `[1]`
-    where : the card's frequency in the spectrum
     """
 
     film: Film
-    spectrum: Spectrum
+    point: CardPoint
     permittivity: FloatArray
     loss: FloatArray
-    where: Position
     config: PermittivityConfig
+
+    @property
+    def spectrum(self) -> Spectrum:
+        """The sound points."""
+        return self.point.spectrum
+
+    @property
+    def where(self) -> Position:
+        """The card's frequency in the spectrum."""
+        return self.point.where
 
     @property
     def conditions(self) -> dict[str, Condition]:
         """What the technique itself fixes."""
-        return {"frequency_Hz": self.config.card_frequency_Hz}
+        return {"frequency_Hz": self.point.frequency_Hz}
 
     @property
     def lines(self) -> tuple[int, int]:
@@ -68,7 +79,9 @@ class Reading:
     def how(self) -> str:
         """How the card's frequency was reached, in words."""
         way = "interpolated in log f to" if self.where.interpolated else "measured at"
-        return f"{way} {self.config.card_frequency_Hz:g} Hz, from {self.spectrum.mode}"
+        if self.where.extrapolated:
+            way = "continued in log f from its neighbours to"
+        return f"{way} {self.point.frequency_Hz:g} Hz, from {self.spectrum.mode}"
 
     @property
     def impedance_ohm(self) -> float:
@@ -88,8 +101,9 @@ def reduce(
     r"""Reduce one film to permittivity and loss; the whole sweep is kept as its curve.
 
     $\epsilon_r = C_p d / (\epsilon_0 A)$ and $\tan\delta$ at the card's frequency, measured there
-    or interpolated in log f, never extrapolated. The meter's limit of error $A_e(|Z|, f)$ counts as
-    rectangular, $u = A_e / \sqrt 3$, shared by all films: the same meter errs alike.
+    or interpolated in log f; see `card_point` for sweeps with faults. The meter's limit
+    of error $A_e(|Z|, f)$ counts as rectangular, $u = A_e / \sqrt 3$, shared by all films: the
+    same meter errs alike.
 
     Parameters
     ----------
@@ -106,45 +120,41 @@ def reduce(
         spectrum = spectrum_of(file, context.machine.impedance, config)
     except FitRefused as error:
         return nothing_measured(specimen, (PERMITTIVITY, LOSS), error, recording)
-    permittivity, loss = permittivity_of(spectrum.capacitance_F, film, config.edge_field)
-    curve = FilmSpectrum(spectrum.frequency_Hz, permittivity, loss)
+    at: dict[str, Condition] = {"frequency_Hz": config.card_frequency_Hz}
     try:
-        where = _card_position(spectrum, config)
+        point = card_point(spectrum, config)
+        curve = _curve(point.spectrum, film, config)
+        reading = Reading(film, point, curve.relative_permittivity, curve.loss_tangent, config)
+        dependence = _dependence(reading)
     except FitRefused as error:
-        at: dict[str, Condition] = {"frequency_Hz": config.card_frequency_Hz}
         refusals = tuple(refusal(specimen, key, error, at) for key in (PERMITTIVITY, LOSS))
-        return Measurement(specimen, (), refusals, curve, file.source)
-    reading = Reading(film, spectrum, permittivity, loss, where, config)
+        return Measurement(specimen, (), refusals, _curve(spectrum, film, config), file.source)
     flags = file.flags + _flags(reading, "level_V" in file.metadata)
-    dependence = _dependence(reading)
-    values = (_permittivity(reading, dependence, flags), _loss(reading, flags))
-    whole = replace(curve, dependence=dependence)
-    return Measurement(specimen, values, (), whole, file.source)
+    values: tuple[MeasuredValue, ...] = (_permittivity(reading, dependence, flags),)
+    refused = {key: point.not_at for key in (PERMITTIVITY, LOSS) if point.not_at}
+    try:
+        values += (_loss(reading, flags),)
+    except FitRefused as error:
+        refused[LOSS] = error.reason
+    return Measurement(
+        specimen,
+        values,
+        tuple(refusal(specimen, key, FitRefused(why), at) for key, why in refused.items()),
+        replace(curve, dependence=dependence),
+        file.source,
+    )
 
 
-def _card_position(spectrum: Spectrum, config: PermittivityConfig) -> Position:
-    """Find the card's frequency; a point that was over-range there is not replaced by neighbours.
-
-    Raises
-    ------
-    FitRefused : it was over-range, or is not in the sweep
-    """
-    card, tolerance = config.card_frequency_Hz, config.frequency_tolerance
-    lost = spectrum.lost_Hz[np.abs(spectrum.lost_Hz / card - 1.0) <= tolerance]
-    if lost.size and np.abs(spectrum.frequency_Hz / card - 1.0).min() > tolerance:
-        raise FitRefused(
-            f"the point at {lost[0]:g} Hz is marked over-range by the meter; choose a range "
-            "that holds the film's impedance there, or a larger film",
-            {"points": int(spectrum.frequency_Hz.size)},
-        )
-    return position(spectrum.frequency_Hz, card, tolerance, config.widest_gap_decades)
+def _curve(spectrum: Spectrum, film: Film, config: PermittivityConfig) -> FilmSpectrum:
+    permittivity, loss = permittivity_of(spectrum.capacitance_F, film, config.edge_field)
+    return FilmSpectrum(spectrum.frequency_Hz, permittivity, loss)
 
 
 def _permittivity(
     reading: Reading, dependence: Dependence, flags: tuple[Flag, ...]
 ) -> MeasuredValue:
     config, spectrum = reading.config, reading.spectrum
-    value = reading.where.of(reading.permittivity)
+    value = reading.where.of(reading.permittivity) * reading.point.factor
     limit = reading.where.of(spectrum.limit * np.hypot(1.0, spectrum.loss))
     edge = config.u_edge_field * reading.edge_fraction(config.edge_field)
     budget = relative_lines(
@@ -153,6 +163,7 @@ def _permittivity(
             *reading.film.budget,
             Contribution("LCR meter", limit / _LIMIT_TO_SIGMA, shared=True),
             Contribution("edge field", edge, shared=True),
+            *reading.point.found.permittivity,
         ),
     )
     flags += film_flags(reading.film, config) + _edge_flags(reading)
@@ -186,7 +197,10 @@ def _permittivity(
 
 def _loss(reading: Reading, flags: tuple[Flag, ...]) -> MeasuredValue:
     spectrum = reading.spectrum
+    if reading.point.no_loss:
+        raise FitRefused(reading.point.no_loss)
     value = reading.where.of(reading.loss)
+    flags += conduction_flags(spectrum, reading.point.frequency_Hz, value)
     u = reading.where.of(spectrum.limit * (1.0 + np.abs(spectrum.loss))) / _LIMIT_TO_SIGMA
     if abs(value) < 2.0 * u:
         flags += (
@@ -195,7 +209,7 @@ def _loss(reading: Reading, flags: tuple[Flag, ...]) -> MeasuredValue:
                 f"{value:.2g}, where the meter tells losses to +- {2 * u:.2g}: not told from zero",
             ),
         )
-    budget = (Contribution("LCR meter", u, shared=True),)
+    budget = (Contribution("LCR meter", u, shared=True), *reading.point.found.loss)
     return MeasuredValue(
         key=LOSS,
         quantity=Quantity.from_budget(value, "1", budget),
@@ -272,13 +286,13 @@ def _resistance(spectrum: Spectrum) -> tuple[float, float] | None:
 def _flags(reading: Reading, level_said: bool) -> tuple[Flag, ...]:
     """Everything a reader of both values must know."""
     config, where = reading.config, reading.where
-    flags = _resistance_flags(reading.spectrum, config)
+    flags = reading.point.found.flags + _resistance_flags(reading.spectrum, config)
     if where.interpolated:
         low, high = reading.spectrum.frequency_Hz[where.indices[[0, -1]]]
         flags += (
             Flag(
                 "interpolated",
-                f"{config.card_frequency_Hz:g} Hz lies between {low:g} and {high:g} Hz, which "
+                f"{reading.point.frequency_Hz:g} Hz lies between {low:g} and {high:g} Hz, which "
                 "were measured",
             ),
         )

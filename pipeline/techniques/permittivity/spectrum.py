@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from deamat.estimators.dielectric.impedance import (
     impedance,
     loss_tangent,
 )
+from deamat.estimators.dielectric.repeats import sweep_numbers
 from deamat.techniques.permittivity.config import PermittivityConfig
 from deamat.techniques.permittivity.film import Film
 
@@ -35,6 +36,7 @@ class Spectrum:
     frequency_Hz, capacitance_F : f and $C^* = C_p (1 - j D)$, shape (n,) each
     lines : of the file, counted from 1, shape (n,)
     limit : relative limit of error of the meter at each point, shape (n,)
+    sweep : which of several sweeps in one file each point belongs to, from 0, shape (n,)
     mode : what the meter showed (`Cp-D`)
     lost_Hz : frequencies of the points that the meter called over-range, shape (m,)
     """
@@ -43,8 +45,20 @@ class Spectrum:
     capacitance_F: ComplexArray
     lines: NDArray[np.intp]
     limit: FloatArray
+    sweep: NDArray[np.intp]
     mode: str
     lost_Hz: FloatArray
+
+    def of(self, kept: NDArray[np.bool_]) -> Spectrum:
+        """Return the spectrum of some of its points."""
+        return replace(
+            self,
+            frequency_Hz=self.frequency_Hz[kept],
+            capacitance_F=self.capacitance_F[kept],
+            lines=self.lines[kept],
+            limit=self.limit[kept],
+            sweep=self.sweep[kept],
+        )
 
     @property
     def loss(self) -> FloatArray:
@@ -91,6 +105,7 @@ def spectrum_of(
             {"points": int(np.count_nonzero(good)), "points_needed": config.min_points},
         )
     order = np.flatnonzero(good)[np.argsort(frequency[good], kind="stable")]
+    sweep = sweep_numbers(frequency)[order]
     f = frequency[order]
     capacitance = complex_capacitance(
         modes[0], f, columns[pair.primary][order], columns[pair.secondary][order]
@@ -100,7 +115,7 @@ def spectrum_of(
     limit = accuracy.limit(
         f, np.abs(impedance(f, capacitance)), _level_V(recording, config), fast=_is_fast(recording)
     )
-    return Spectrum(f, capacitance, lines, limit, modes[0], frequency[~good])
+    return Spectrum(f, capacitance, lines, limit, sweep, modes[0], frequency[~good])
 
 
 def _level_V(recording: Recording, config: PermittivityConfig) -> float:

@@ -6,9 +6,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from deamat.core.records import Detail, Measurement, PropertyRecord, Summary
+from deamat.core.records import Detail, Measurement, PropertyRecord, Refusal, Summary
 from deamat.core.technique import Context
+from deamat.estimators.mean import mean_with_shared
 from deamat.techniques.permittivity.config import (
+    LOSS,
     PERMITTIVITY,
     YIELDS,
     PermittivityConfig,
@@ -22,15 +24,42 @@ def summarise(
 ) -> Summary:
     """Average the films and state how the permittivity depends on frequency."""
     summary = summarise_by_mean(measurements, "permittivity", YIELDS)
+    negative = [r for r in summary.records if r.key == LOSS and r.quantity.value < 0.0]
     return replace(
         summary,
+        refusals=summary.refusals + tuple(map(_refused_below_zero, negative)),
         records=tuple(
             _with_dependence(record, _films_of(record, measurements), context.config)
             if record.key == PERMITTIVITY
-            else record
+            else _not_below_zero(record)
             for record in summary.records
+            if record not in negative
         ),
     )
+
+
+def _refused_below_zero(loss: PropertyRecord) -> Refusal:
+    value, u = loss.quantity.value, loss.quantity.standard_uncertainty
+    return Refusal(
+        LOSS,
+        f"the loss comes out below zero, {value:.2g} +- {2.0 * u:.2g}: the meter does not tell it; "
+        "trim open and short, or check the meter's phase against a capacitor without loss",
+        loss.material,
+        loss.campaign,
+        conditions=loss.conditions,
+    )
+
+
+def _not_below_zero(loss: PropertyRecord) -> PropertyRecord:
+    """End the interval of a loss at zero, below which no film is.
+
+    The interval is otherwise the symmetric one, on no log scale: what is not told from zero has
+    no order of magnitude.
+    """
+    quantity = loss.quantity
+    values = [origin.value for origin in loss.origins]
+    low, high = mean_with_shared(values, quantity.u_independent, quantity.u_shared).ci95
+    return loss if low > 0.0 else replace(loss, ci95=(0.0, high))
 
 
 def _films_of(
@@ -63,7 +92,7 @@ def _with_dependence(
         "change_to_top_frequency": change,
         "u_change_to_top_frequency": u,
     }
-    span = f"from {config.card_frequency_Hz:g} Hz to {top:g} Hz"
+    span = f"from {record.conditions['frequency_Hz']:g} Hz to {top:g} Hz"
     told = f"{'falls' if change < 0 else 'rises'} by {100 * abs(change):.2g} % {span}"
     if abs(change) < 2.0 * u:
         told = f"does not depend on frequency {span} by more than is told ({100 * change:+.2g} %)"

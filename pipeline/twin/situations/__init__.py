@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
-from deamat.twin.situations import tension
+from deamat.twin.situations import permittivity, tension
 from deamat.twin.situations.situation import Situation
 
-SITUATIONS: dict[str, Situation] = {s.name: s for s in (*tension.SITUATIONS,)}
+SITUATIONS: dict[str, Situation] = {
+    s.name: s
+    for s in (
+        *tension.SITUATIONS,
+        *permittivity.SITUATIONS,
+    )
+}

@@ -33,7 +33,6 @@ from tests.techniques.permittivity.films import (
     names,
     recording,
     reduce,
-    refused,
 )
 
 
@@ -185,14 +184,19 @@ def test_between_two_measured_frequencies_it_says_so() -> None:
     assert measured.values[0].lines == (7, 8)
 
 
-def test_never_beyond_the_sweep_but_the_curve_is_kept() -> None:
+def test_where_the_frequency_asked_for_was_not_measured_the_nearest_is_given_as_such() -> None:
     f = np.logspace(math.log10(20), 4, 31)
-    measured = reduce(recording(capacitor(2.63), frequency_Hz=f))
-    assert refused(measured) == (
-        "10 Hz is not measured: the sweep goes from 20 to 10000 Hz, and nothing is extrapolated; measure at 10 Hz (+- 1 %)"
-    )
-    assert measured.refusals[0].conditions == {"age": "after cure", "frequency_Hz": 10.0}
-    assert measured.curve["frequency_Hz"][0] == pytest.approx(20.0)
+    measured = reduce(recording(capacitor(2.63), frequency_Hz=f), micrometer_force_N=NO_FORCE)
+    assert card(measured) == pytest.approx((2.63, 0.003), rel=1e-12)
+    assert measured.values[0].conditions == {"frequency_Hz": 20.0}
+    assert "measured at 20 Hz" in measured.values[0].method
+    for value in (0, 1):
+        assert flag(measured, "other-frequency", value) == (
+            "10 Hz is not measured: the sweep goes from 20 to 10000 Hz, and nothing is "
+            "extrapolated; this is the value at 20 Hz, the nearest that was measured "
+            "(card_frequency_Hz of [permittivity] in config/methods.toml says which one is asked "
+            "for)"
+        )
 
 
 def test_another_card_frequency_may_be_declared() -> None:

@@ -1,0 +1,46 @@
+"""Ions in a sweep: the power law of polarised electrodes, and the loss of a conductor."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from deamat.estimators.dielectric.low_frequency import conducts, polarisation
+
+F = np.logspace(1, 4, 31)
+FILM = 1e-10 * (1 - 0.004 * np.log10(F / 10))
+LOSS = np.full(31, 0.004)
+
+
+@pytest.mark.parametrize("s", [0.8, 1.2, 1.6])
+@pytest.mark.parametrize("height", [0.03, 0.4, 2.0])
+def test_height_and_exponent_come_back(height: float, s: float) -> None:
+    rise = height * (F / 10) ** -s
+    found = polarisation(F, FILM * (1 + rise), LOSS + 0.3 * rise, 10.0)
+    assert found is not None
+    assert found.height == pytest.approx(height, rel=0.03)
+    assert found.exponent == pytest.approx(s)
+    assert found.at(100.0) == pytest.approx(height * 10.0**-s, rel=0.03)
+
+
+def test_a_rise_without_loss_or_a_film_that_depends_on_ln_f_is_none() -> None:
+    rise = 0.4 * (F / 10) ** -1.2
+    assert polarisation(F, FILM * (1 + rise), LOSS, 10.0) is None
+    steep = 1e-10 * (1 - 0.05 * np.log10(F / 10))
+    assert polarisation(F, steep, LOSS * (F / 10) ** -0.3, 10.0) is None
+
+
+def test_five_points_tell_a_strong_rise() -> None:
+    f = np.logspace(1, 5, 5)
+    rise = 0.4 * (f / 10) ** -1.2
+    found = polarisation(f, 1e-10 * (1 + rise), 0.004 + 0.3 * rise, 10.0)
+    assert found is not None
+    assert found.height == pytest.approx(0.4, rel=0.05)
+    assert polarisation(f[:2], 1e-10 * (1 + rise[:2]), 0.004 + rise[:2], 10.0) is None
+
+
+def test_most_of_a_loss_by_conduction_falls_as_one_over_f() -> None:
+    assert conducts(F, 0.003 + 0.05 * (10 / F), 10.0)
+    assert not conducts(F, 0.05 + 0.003 * (10 / F), 10.0)
+    assert not conducts(F, 0.05 * (10 / F) ** 0.3, 10.0)
+    assert not conducts(F[::10], 0.05 * (10 / F[::10]), 10.0)
