@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import json
+import os
+import shutil
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -9,9 +14,10 @@ import pytest
 
 from benchmarks.mutation.__main__ import reasons_in, report
 from benchmarks.mutation.blocks import block_of, instrumented
+from benchmarks.mutation.copies import Copy
 from benchmarks.mutation.judge import Verdict
 from benchmarks.mutation.mutants import Mutant, mutants_in, mutants_of, sample_of
-from benchmarks.mutation.tests_of import Hits
+from benchmarks.mutation.tests_of import Hits, measured
 
 PIPELINE = Path(__file__).resolve().parents[2] / "pipeline"
 
@@ -82,7 +88,7 @@ def test_a_seed_names_the_sample_and_an_edit_elsewhere_keeps_most_of_it() -> Non
 def test_every_slip_in_the_package_compiles_and_has_a_name_of_its_own() -> None:
     mutants = mutants_of(PIPELINE, "run")
     assert len({mutant.name for mutant in mutants}) == len(mutants) > 100
-    for mutant in mutants:
+    for mutant in sample_of(mutants, 60, seed=3):
         source = (PIPELINE / mutant.file).read_text(encoding="utf-8")
         changed = mutant.applied_to(source)
         compile(changed, mutant.file, "exec")
@@ -165,3 +171,60 @@ def test_names_hold_where_the_slip_is() -> None:
     assert isinstance(first, Mutant)
     assert first.name != second.name
     assert (first.line, second.line) == (1, 2)
+
+
+def test_a_mutant_is_killed_by_a_test_by_the_time_limit_or_by_nobody(tmp_path: Path) -> None:
+    module, test = tmp_path / "three.py", tmp_path / "test_three.py"
+    source = "def three():\n    return 3\n"
+    module.write_text(source)
+    test.write_text("import three\n\ndef test_it():\n    assert three.three() > 2\n")
+    changed = {
+        "killed": source.replace("3", "2"),
+        "not imported": "three = 3\nraise ValueError\n",
+        "endless": source.replace("return 3", "while True: pass"),
+        "alive": source.replace("3", "4"),
+    }
+    tasks = [
+        {"path": str(module), "source": text, "tests": ["test_three.py::test_it"], "cpu_s": 1.0}
+        for text in changed.values()
+    ]
+    done = subprocess.run(
+        [sys.executable, "-m", "benchmarks.mutation.worker"],
+        input="".join(json.dumps(task) + "\n" for task in tasks),
+        cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(PIPELINE.parent)},
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    killers = [json.loads(line)["killer"] for line in done.stdout.splitlines()]
+    assert killers == ["test_three.py::test_it", "test_three.py", "time limit", None]
+    assert module.read_text() == source
+
+
+def test_blocks_are_noted_for_each_test_and_for_all_where_a_fixture_runs_them(
+    tmp_path: Path,
+) -> None:
+    for folder in ("pipeline/some", "tests", "now"):
+        (tmp_path / folder).mkdir(parents=True)
+    (tmp_path / "tests/conftest.py").write_text("")
+    (tmp_path / "pipeline/some/a.py").write_text(
+        "def made():\n    return 1\n\n\ndef used():\n    return 2\n"
+    )
+    (tmp_path / "tests/test_a.py").write_text(
+        "import pytest\nfrom pipeline.some.a import made, used\n\n"
+        "@pytest.fixture(scope='module')\ndef one():\n    return made()\n\n"
+        "def test_first(one):\n    assert one == 1\n\n"
+        "def test_second(one):\n    assert used() == 2\n\n"
+        "def test_third(one):\n    assert used() == 3\n"
+    )
+    original = (tmp_path / "pipeline/some/a.py").read_text()
+    copy = Copy(tmp_path / "now", tmp_path)
+    for name in ("pipeline", "tests"):
+        shutil.copytree(tmp_path / name, copy.root / name)
+    (copy.root / "benchmarks").symlink_to(PIPELINE.parent / "benchmarks")
+    for _ in range(2):  # measured, then remembered
+        hits = measured([copy], tmp_path / "pipeline", "some", ["tests"], tmp_path / "cache")
+        assert hits.tests == {
+            "some/a.py:2": {"tests/test_a.py"},
+            "some/a.py:6": {"tests/test_a.py::test_second", "tests/test_a.py::test_third"},
+        }
+        assert set(hits.seconds) == {"tests/test_a.py::test_first", "tests/test_a.py::test_second"}
+    assert (copy.root / "pipeline/some/a.py").read_text() == original
