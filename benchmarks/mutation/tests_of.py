@@ -12,7 +12,9 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
+from queue import Empty, SimpleQueue
 
 from benchmarks.mutation.blocks import block_of, instrumented
 from benchmarks.mutation.copies import Copy, digest
@@ -72,13 +74,15 @@ def measured(
         if not known.is_file():
             waiting.append((name, known))
     if waiting:
-        for one in copies:
-            one.replace(package, lambda source, file: instrumented(source, file))
-        shares = [waiting[start :: len(copies)] for start in range(len(copies))]
+        for copy in copies:
+            copy.replace(package, lambda source, file: instrumented(source, file))
+        shared: SimpleQueue[tuple[str, Path]] = SimpleQueue()
+        for one in waiting:
+            shared.put(one)
         with ThreadPoolExecutor(len(copies)) as pool:
-            list(pool.map(_note, copies, shares))
-        for one in copies:
-            one.restore(package)
+            list(pool.map(partial(_note, shared), copies))
+        for copy in copies:
+            copy.restore(package)
     for known in told:
         noted = json.loads(known.read_text(encoding="utf-8"))
         hits.seconds |= noted["seconds"]
@@ -106,9 +110,13 @@ def importers_of(folder: Path, package: str) -> dict[str, set[str]]:
     return found
 
 
-def _note(copy: Copy, files: Sequence[tuple[str, Path]]) -> None:
-    """Run some files of tests, each in a process of its own so that nothing is shared."""
-    for name, known in files:
+def _note(waiting: SimpleQueue[tuple[str, Path]], copy: Copy) -> None:
+    """Run files of tests while there are any, each in a process of its own."""
+    while True:
+        try:
+            name, known = waiting.get_nowait()
+        except Empty:
+            return
         with tempfile.TemporaryDirectory() as there:
             report, log = Path(there, "report.json"), Path(there, "hits")
             subprocess.run(
