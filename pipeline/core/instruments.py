@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from fnmatch import fnmatchcase
+from typing import Annotated
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 from deamat.core.arrays import FloatArray
 
@@ -95,10 +97,22 @@ class LcrAccuracy(Declared):
         return limit
 
 
+def _no_regular_expression(pattern: str) -> str:
+    """Refuse what would silently match nothing; a regular expression can also take for ever."""
+    found = re.search(r"\.[*+?]|[\\^$|]", pattern)
+    if found:
+        raise ValueError(f"{found[0]!r} is of a regular expression: write `*` for any text")
+    return pattern
+
+
 class Machine(Declared):
     """What the numbers of a testing machine are good for (relative ones are 1 sigma)."""
 
-    match: str = Field(default="", description="regular expression on the register's instrument")
+    match: Annotated[str, AfterValidator(_no_regular_expression)] = Field(
+        default="",
+        description="text that occurs in the register's instrument, in small letters or capitals; "
+        "`*` stands for any text, `?` for any character",
+    )
     force_resolution_N: float = Field(default=0.0, ge=0)
     u_force_calibration: float = Field(default=0.005, ge=0, description="relative, shared")
     u_displacement_calibration: float = Field(default=0.002, ge=0, description="relative, shared")
@@ -133,6 +147,7 @@ class Instruments(Declared):
     def machine(self, instrument: str) -> tuple[str, Machine]:
         """Find the machine that a register's `instrument` names; the class defaults otherwise."""
         for name, machine in self.machines.items():
-            if machine.match and re.search(machine.match, instrument):
+            pattern = f"*{machine.match.casefold()}*"
+            if machine.match and fnmatchcase(instrument.casefold(), pattern):
                 return name, machine
         return "default", Machine()

@@ -29,6 +29,7 @@ REGISTER_FILE = "specimens.csv"
 REGISTER_FILES = (REGISTER_FILE, "observations.csv")
 
 _TINIEST, _LARGEST = 1e-30, 1e30  # in SI: no measured number is smaller or larger
+_SHORTEST_m, _LONGEST_m = 1e-9, 1e3
 _LONGEST_SPECIMEN = 120
 _SHOWN = 80  # characters of a bad cell
 
@@ -274,6 +275,11 @@ class _Rows:
             value == 0 and (column.positive or (needed and column.unit != "s"))
         ):
             raise RawFileError(self.path, "must be positive", line, column.index + 1, cell)
+        if column.unit == "m" and value != 0 and not _SHORTEST_m <= abs(value) <= _LONGEST_m:
+            raise RawFileError(
+                self.path, "no length of a specimen or a gauge", line, column.index + 1, cell,
+                f"check the unit in the header, {column.header!r}",
+            )  # fmt: skip
         if column.unit == "K" and value < 0:
             raise RawFileError(
                 self.path, "a temperature below absolute zero", line, column.index + 1, cell,

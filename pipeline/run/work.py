@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
+import numpy as np
+
 from deamat.core.errors import ConfigError, RawFileError
 from deamat.core.ledger import Failure
 from deamat.core.records import Flag, Measurement, Recording, Specimen
@@ -19,6 +21,7 @@ from deamat.run.boundary import attempt, killed
 from deamat.techniques import TECHNIQUES
 
 FILES_PER_TASK = 25
+_TINIEST, _LARGEST = 1e-60, 1e60  # meters write 9.9e37 for a reading out of range
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +98,7 @@ def _read(task: Task, path: str) -> Recording:
     if file.sha256 != task.sha256:
         raise RawFileError(path, "the file changed while it was being read", hint="run again")
     recording = _format(task.specimen, file).read(file)
+    _insist_on_scale(recording)
     if task.changed:
         campaign = task.specimen.campaign
         raise RawFileError(
@@ -103,6 +107,27 @@ def _read(task: Task, path: str) -> Recording:
             hint=f"restore it, or look at `deamat register {campaign}` and accept the change",
         )
     return recording
+
+
+def _insist_on_scale(recording: Recording) -> None:
+    """Refuse numbers that nothing measures: their squares and ratios cannot be computed.
+
+    Raises
+    ------
+    RawFileError : a number above zero that is far smaller or larger than any measured one in SI
+    """
+    source = recording.source
+    for name, column in recording.columns.items():
+        size = np.abs(column)
+        wrong = np.flatnonzero(
+            (size > _LARGEST) & np.isfinite(size) | (size < _TINIEST) & (size > 0)
+        )
+        if wrong.size:
+            at = int(wrong[0])
+            by_line = source.last_line - source.first_line + 1 == column.size
+            line = source.first_line + at if by_line else None
+            reason = f"{name} is {column[at]:g} in row {at + 1}, which nothing measures"
+            raise RawFileError(source.path, reason, line, hint="restore the file or exclude it")
 
 
 def _format(specimen: Specimen, file: RawFile) -> Format:

@@ -50,7 +50,8 @@ def find_rupture(strain: FloatArray, stress: FloatArray, drop: float) -> Rupture
     drop : fraction of the greatest stress by which the load must fall
     """
     maximum = int(stress.argmax())
-    carrying = np.flatnonzero(stress >= (1.0 - drop) * stress[maximum])
+    greatest = float(stress[maximum])  # below zero where nothing was pulled
+    carrying = np.flatnonzero(stress >= min(greatest, (1.0 - drop) * greatest))
     last = int(carrying[-1])
     if last + 1 == stress.size:
         turned = strain[maximum:].max() - strain[-1] > _BACK * strain.max()

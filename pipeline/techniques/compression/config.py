@@ -18,7 +18,7 @@ class CompressionConfig(CurveConfig):
         default=(0.0, 0.05), description="nominal strain over which the slope is taken"
     )
     toe_bin: float = Field(
-        default=0.01, gt=0, description="width in strain of the bins that show a toe"
+        default=0.01, ge=1e-4, description="width in strain of the bins that show a toe"
     )
     toe_flag_ratio: float = Field(
         default=0.8,
