@@ -97,6 +97,19 @@ class Conditional:
         lower, upper = _central(distribution, centre, spread, level)
         return self.samples.largest * np.exp(lower), self.samples.largest * np.exp(upper)
 
+    def shape_below(self, shape: float) -> FloatArray:
+        """Probability that the shape is at most this, shape (m,)."""
+        at = np.full_like(self.mode, np.log(shape))
+        return _shape_distribution(_nodes(self, self.width))(at)[0]
+
+    def quantile_below(self, log_hazard: float, value: float) -> FloatArray:
+        """Probability that the value with hazard exp(A) is at most `value`, equation (2), (m,)."""
+        t = np.log(value / self.samples.largest)
+        nodes = _nodes(self, self._feature(t))
+        shift = log_hazard - nodes.shape * t[:, None]
+        below, _ = _gamma_terms(nodes, self.samples.failures, shift)
+        return nodes.mean(below)
+
     def log_hazard(self, field: ArrayLike, level: float) -> Bounds:
         """Bounds on ln(-ln(1 - F)), with F the fraction that does not survive `field`.
 

@@ -1,8 +1,9 @@
 """Does the Weibull form fit, and is the weakest specimen too weak for it? Nothing is ever deleted.
 
-Both statistics are computed after fitting and compared with simulated samples of the same size and
+The statistics are computed after fitting and compared with simulated samples of the same size and
 censoring, drawn with a fixed seed and kept: the same question gets the same answer. A large p-value
-proves little: with 20 specimens a lognormal truth is told from a Weibull in one sample of five.
+proves little: with 20 specimens a lognormal truth is told from a Weibull in one sample of five;
+`weibull.unseen` says what n specimens could have seen.
 
 Source: Anderson and Darling, J. Am. Stat. Assoc. 49 (1954) 765-769; Pettitt and Stephens,
 Biometrika 63 (1976) 291-298 for censored samples.
@@ -11,25 +12,14 @@ Biometrika 63 (1976) 291-298 for censored samples.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from deamat.core.arrays import FloatArray
-from deamat.estimators.weibull.fit import fit, fit_batch
+from deamat.estimators.weibull.fit import fit
+from deamat.estimators.weibull.reference import anderson_darling, curvature, reference
 from deamat.estimators.weibull.sample import as_arrays
-from deamat.estimators.weibull.simulate import (
-    Withdrawals,
-    at_risk,
-    standard_samples,
-    withdrawals,
-)
-
-_DRAWS = 10_000  # a p-value of 0.05 is good to 0.002
-_FEWEST_DRAWS = 1_000
-_MOST_VALUES = 1_000_000
-_SEED = 62539
+from deamat.estimators.weibull.simulate import withdrawals
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +62,21 @@ class LowOutlier:
     exact: bool
 
 
+@dataclass(frozen=True, slots=True)
+class Curved:
+    """How far the Weibull plot of a sample is from straight.
+
+    Parameters
+    ----------
+    score : per square root of the failures; above 0 towards a threshold, below 0 towards a tail of
+        weak specimens
+    p_value : fraction of Weibull samples whose plot is as curved, either way
+    """
+
+    score: float
+    p_value: float
+
+
 def goodness_of_fit(x: ArrayLike, censored: ArrayLike | None = None) -> GoodnessOfFit:
     """Test the Weibull form by the Anderson-Darling statistic with fitted parameters.
 
@@ -90,14 +95,38 @@ def goodness_of_fit(x: ArrayLike, censored: ArrayLike | None = None) -> Goodness
     removed = withdrawals(values, failed)
     hazard = (np.sort(values[failed]) / best.scale) ** best.shape
     statistic = anderson_darling(hazard[None, :], removed).item()
-    reference, _ = _reference(removed)
-    beyond = reference.size - int(np.searchsorted(reference, statistic))
+    null = reference(removed)
+    beyond = null.draws - int(np.searchsorted(null.anderson_darling, statistic))
     return GoodnessOfFit(
-        statistic,
-        (1 + beyond) / (1 + reference.size),
-        reference.size,
-        best.censoring != "type I or random",
+        statistic, (1 + beyond) / (1 + null.draws), null.draws, best.censoring != "type I or random"
     )
+
+
+def curved(x: ArrayLike, censored: ArrayLike | None = None) -> Curved:
+    """Test whether the Weibull plot is straight, by the score of its curvature.
+
+    The alternative is ln x = a + b (H^c - 1)/c with H = -ln(1 - F); c = 0 is the Weibull form. With
+    y = shape ln(x / scale) the score of c is the sum of exp(y) y^2/2 over all, less that of
+    y^2/2 + y over the failures. c > 0 has a threshold, below which no specimen fails; c < 0 has
+    more weak specimens than a Weibull, as two populations and competing modes have.
+
+    Parameters
+    ----------
+    x, censored : as for `weibull.fit`, shape (n,)
+
+    Raises
+    ------
+    FitRefused : as `weibull.fit`
+    """
+    best = fit(x, censored)
+    values, failed = as_arrays(x, censored, ndim=1)
+    removed = withdrawals(values, failed)
+    hazard = (np.sort(values[failed]) / best.scale) ** best.shape
+    score = curvature(hazard[None, :], removed).item()
+    null = reference(removed)
+    below = int(np.searchsorted(null.curvature, score, side="right"))
+    rarer = min(below, null.draws - below)
+    return Curved(score, min(1.0, 2.0 * (1 + rarer) / (1 + null.draws)))
 
 
 def low_outlier(x: ArrayLike, censored: ArrayLike | None = None, level: float = 0.05) -> LowOutlier:
@@ -121,9 +150,9 @@ def low_outlier(x: ArrayLike, censored: ArrayLike | None = None, level: float = 
     values, failed = as_arrays(x, censored, ndim=1)
     index = int(np.argmin(np.where(failed, values, np.inf)))
     hazard = float((values[index] / best.scale) ** best.shape)
-    _, reference = _reference(withdrawals(values, failed))
-    as_low = int(np.searchsorted(reference, hazard, side="right"))
-    p_value = (1 + as_low) / (1 + reference.size)
+    null = reference(withdrawals(values, failed))
+    as_low = int(np.searchsorted(null.lowest, hazard, side="right"))
+    p_value = (1 + as_low) / (1 + null.draws)
     return LowOutlier(
         index,
         float(values[index]),
@@ -132,40 +161,3 @@ def low_outlier(x: ArrayLike, censored: ArrayLike | None = None, level: float = 
         p_value < level,
         best.censoring != "type I or random",
     )
-
-
-def anderson_darling(hazard: FloatArray, removed: Withdrawals) -> FloatArray:
-    """Integrate A^2 in closed form between failures, where F_n = c is constant.
-
-    The integral of (c - u)^2 / (u (1 - u)) is c^2 ln u - (1 - c)^2 ln(1 - u) - u.
-
-    Parameters
-    ----------
-    hazard : -ln(1 - F) at the failures in rising order, shape (m, r)
-    removed : specimens withdrawn after each failure, length r
-
-    Returns
-    -------
-    A^2, shape (m,)
-    """
-    n = at_risk(removed)
-    c = 1.0 - np.cumprod(1.0 - 1.0 / n)[:-1]
-    u = -np.expm1(-hazard)
-    log_u = np.log(u)
-    rise = c**2 * np.diff(log_u) + (1.0 - c) ** 2 * np.diff(hazard) - np.diff(u)
-    total: FloatArray = hazard[:, 0] - u[:, 0] + rise.sum(axis=1)
-    if removed[-1] == 0:  # the last one failed too: F_n = 1 from there to F = 1
-        total += u[:, -1] - log_u[:, -1] - 1.0
-    return float(n[0]) * total
-
-
-@lru_cache(maxsize=64)
-def _reference(removed: Withdrawals) -> tuple[FloatArray, FloatArray]:
-    """Sorted A^2 and lowest hazards of simulated Weibull samples."""
-    n = int(at_risk(removed)[0])
-    draws = min(_DRAWS, max(_FEWEST_DRAWS, _MOST_VALUES // n))
-    failures, values, censored = standard_samples(removed, draws, _SEED)
-    fits = fit_batch(values, censored)
-    fitted = ~fits.refused
-    hazard = (failures[fitted] / fits.scale[fitted, None]) ** fits.shape[fitted, None]
-    return np.sort(anderson_darling(hazard, removed)), np.sort(hazard[:, 0])

@@ -2,8 +2,8 @@
 
 The formulas stand in `weibull_conditional`. An interval at 95 % covers the truth in 95 % of
 samples, however small, when the sample is complete or all tests stopped at the last failure
-(type II); with other censoring it is an approximation (94 to 96 % in simulation, with unequal
-tails).
+(type II); with other censoring it is an approximation with unequal tails, and `weibull.coverage`
+says how good a one for a given sample.
 """
 
 from __future__ import annotations

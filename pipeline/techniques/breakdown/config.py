@@ -103,6 +103,32 @@ class BreakdownConfig(Declared):
     low_outlier_level: float = Field(
         default=0.05, gt=0, lt=1, description="p-value below which the weakest specimen is named"
     )
+    curvature_level: float = Field(
+        default=0.005,
+        gt=0,
+        lt=1,
+        description="p-value below which the Weibull plot is called curved (two populations, "
+        "competing modes, a threshold)",
+    )
+    thickness_level: float = Field(
+        default=0.005,
+        gt=0,
+        lt=1,
+        description="p-value below which the field at breakdown is said to follow the thickness",
+    )
+    form_power: float = Field(
+        default=0.8,
+        gt=0.1,
+        lt=1,
+        description="a departure from the Weibull form that the tests find in this fraction of "
+        "samples counts as one that would have been seen",
+    )
+    form_tolerance: float = Field(
+        default=0.1,
+        gt=0,
+        description="B1 and B10 are flagged where a departure that would not have been seen moves "
+        "them by more than this fraction",
+    )
     area_ratio_limit: float = Field(
         default=10.0,
         ge=1,

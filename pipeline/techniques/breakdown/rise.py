@@ -128,10 +128,10 @@ def find_steps(
     None where the rise is no staircase
     """
     t, v = _blocks(time_s[: last + 1], voltage_V[: last + 1])
-    first = int(np.argmax(v >= _FOOT * v.max()))
-    t, v = t[first:], v[first:]
-    if v.size < 2 * _FEWEST_LEVELS:
+    begun = np.flatnonzero(v >= _FOOT * v.max(initial=0.0))
+    if begun.size < 2 * _FEWEST_LEVELS:
         return None
+    t, v = t[begun[0] :], v[begun[0] :]
     change, top = np.diff(v), float(v.max())
     usual = float(np.median(change))
     deviation = 1.4826 * float(np.median(np.abs(change - usual)))

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 
 from deamat.core.records import Detail, Flag
 from deamat.core.units import from_si
-from deamat.estimators.weibull.goodness import GoodnessOfFit, LowOutlier
 from deamat.estimators.weibull.intervals import Inference
 from deamat.techniques.breakdown.config import BreakdownConfig
+from deamat.techniques.breakdown.form import Form, form_details, form_flags
 from deamat.techniques.breakdown.sample import Sample
 from deamat.techniques.shared.mean import merged_flags
 
@@ -18,8 +18,7 @@ from deamat.techniques.shared.mean import merged_flags
 def diagnostics(
     sample: Sample,
     inference: Inference,
-    form: GoodnessOfFit,
-    lowest: LowOutlier,
+    form: Form,
     config: BreakdownConfig,
 ) -> dict[str, Detail]:
     """List what is known of a sample and its fit, as numbers and names."""
@@ -31,10 +30,7 @@ def diagnostics(
         "censored": fit.n - fit.failures,
         "censoring": fit.censoring,
         "log_likelihood": fit.log_likelihood,
-        "anderson_darling": form.statistic,
-        "goodness_p": form.p_value,
-        "low_outlier_p": lowest.p_value,
-        "low_outlier": sample.pairs[lowest.index][0].specimen.id if lowest.found else "none",
+        **form_details(sample, form),
         "least_field_V_per_m": float(sample.field_V_per_m.min()),
         "greatest_field_V_per_m": float(sample.field_V_per_m.max()),
         "area_scaling": _area_scaling(sample, config),
@@ -67,40 +63,14 @@ def _area_scaling(sample: Sample, config: BreakdownConfig) -> str:
 def flags_of(
     sample: Sample,
     inference: Inference,
-    form: GoodnessOfFit,
-    lowest: LowOutlier,
+    form: Form,
     lost: list[str],
     config: BreakdownConfig,
 ) -> tuple[Flag, ...]:
     """Say what weakens the fit: of the specimens, of the form, of what is missing."""
     fit = inference.fit
     flags = [*merged_flags(sample.pairs), *as_flags(fit.warnings)]
-    if fit.censoring == "type I or random":
-        flags.append(
-            Flag(
-                "approximate-interval",
-                f"{fit.n - fit.failures} of {fit.n} specimens did not break, each at a limit of "
-                "its own: the intervals are then approximate (94 to 95 % in simulation)",
-            )
-        )
-    if form.p_value < config.goodness_level:
-        flags.append(
-            Flag(
-                "poor-fit",
-                f"only {100 * form.p_value:.2g} % of Weibull samples lie as far from their fit "
-                f"(Anderson-Darling {form.statistic:.3g}): low quantiles cannot be trusted",
-            )
-        )
-    if lowest.found:
-        who = sample.pairs[lowest.index][0].specimen.id
-        flags.append(
-            Flag(
-                "low-outlier",
-                f"{who} broke at {from_si(lowest.value, 'V/um'):.4g} V/um; only "
-                f"{100 * lowest.p_value:.2g} % of Weibull samples hold one as weak; it is in the "
-                "fit all the same",
-            )
-        )
+    flags += form_flags(sample, fit, form, config)
     ramps = [film.ramp for film in sample.films if film.ramp is not None]
     stepped = sum(ramp.steps is not None for ramp in ramps)
     if 0 < stepped < len(ramps):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +12,7 @@ from deamat.core.errors import FitRefused
 from deamat.core.properties import property_key
 from deamat.core.quantity import Contribution, Quantity
 from deamat.core.records import (
+    Detail,
     Flag,
     Measurement,
     PropertyRecord,
@@ -20,8 +21,6 @@ from deamat.core.records import (
 )
 from deamat.core.technique import Context
 from deamat.core.units import from_si
-from deamat.estimators.weibull.goodness import goodness_of_fit as test_of_form
-from deamat.estimators.weibull.goodness import low_outlier as test_of_lowest
 from deamat.estimators.weibull.intervals import P_SCALE, Inference, Interval, infer
 from deamat.estimators.weibull.sample import MIN_DISTINCT, MIN_SPREAD
 from deamat.estimators.weibull.shape import unbiased_shape
@@ -33,6 +32,13 @@ from deamat.techniques.breakdown.config import (
     UNBIASED,
     YIELDS,
     BreakdownConfig,
+)
+from deamat.techniques.breakdown.form import (
+    could_not_see,
+    freed_of_thickness,
+    judge,
+    unseen_details,
+    unseen_flags,
 )
 from deamat.techniques.breakdown.result import FilmTest
 from deamat.techniques.breakdown.sample import Sample, methods, samples, shared_lines
@@ -49,7 +55,8 @@ def summarise(
     r"""Fit a two-parameter Weibull distribution, $F = 1 - \exp(-(E/E_b)^\beta)$, by its likelihood.
 
     Specimens that did not break are right-censored. Where the log of some does not tell whether
-    they broke, the intervals hold those of both readings. They are Lawless' exact conditional
+    they broke, or their strength seems to follow their thickness, the intervals hold those of both
+    readings. They are Lawless' exact conditional
     ones. Those of fields are widened by what all specimens have in common (voltage calibration,
     thickness gauge): on the logarithmic scale, on either side, half width and 1.96 times the
     shared relative uncertainty are added in quadrature. The shape does not change with the scale
@@ -76,18 +83,24 @@ def _records(sample: Sample, lost: list[str], config: BreakdownConfig) -> list[P
     x, censored = sample.field_V_per_m, sample.censored
     wide = infer(x, censored)
     narrow = replace(wide, level=_ONE_SIGMA)
-    other = _counted_otherwise(sample)
-    form = test_of_form(x, censored)
-    lowest = test_of_lowest(x, censored, config.low_outlier_level)
+    form = judge(sample, wide.fit, config)
+    switched = _counted_otherwise(sample)
+    others = tuple(i for i in (switched, freed_of_thickness(sample, form)) if i is not None)
     unbiased = unbiased_shape(x, censored)
     shape = wide.shape()
     shared = shared_lines(sample)
     limit = None if sample.area_m2 is None else config.area_ratio_limit
-    details = diagnostics(sample, wide, form, lowest, config)
-    flags = (*flags_of(sample, wide, form, lowest, lost, config), *_of_both(wide, other))
+    details = diagnostics(sample, wide, form, config)
+    flags = (*flags_of(sample, wide, form, lost, config), *_of_both(wide, switched))
 
     def record(
-        key: str, value: float, ci95: tuple[float, float], u: float, method: str, *more: Flag
+        key: str,
+        value: float,
+        ci95: tuple[float, float],
+        u: float,
+        method: str,
+        more: tuple[Flag, ...] = (),
+        beside: Mapping[str, Detail] | None = None,
     ) -> PropertyRecord:
         unit = property_key(key).unit
         systematic = shared if unit == "V/m" else ()
@@ -110,22 +123,27 @@ def _records(sample: Sample, lost: list[str], config: BreakdownConfig) -> list[P
             budget=budget,
             origins=tuple(origin_of(m, v, "breakdown") for m, v in sample.pairs),
             flags=(*flags, *more, *_implausible(key, value)),
-            diagnostics=details,
+            diagnostics={**details, **(beside or {})},
         )
 
     def of_field(key: str, p: float, what: str) -> PropertyRecord:
         estimate = wide.quantile(p)
         own = tuple(w for w in estimate.warnings if w not in wide.fit.warnings)
-        low, high = _hull(narrow, other, _ONE_SIGMA, lambda given: given.quantile(p))
+        low, high = _hull(narrow.quantile(p), others, lambda given: given.quantile(p))
         method = f"{what} of a two-parameter Weibull fit by maximum likelihood"
-        both = _hull(wide, other, wide.level, lambda given: given.quantile(p))
+        both = _hull(estimate, others, lambda given: given.quantile(p))
         u_shared = math.sqrt(math.fsum(c.u**2 for c in shared))
         ci95 = widened(estimate.estimate, both, u_shared)
-        return record(key, estimate.estimate, ci95, 0.5 * (high - low), method, *as_flags(own))
+        more, beside = as_flags(own), None
+        if p < P_SCALE:
+            hidden = could_not_see(sample, p, config)
+            more += unseen_flags(x.size, p, hidden, config)
+            beside = unseen_details(hidden)
+        return record(key, estimate.estimate, ci95, 0.5 * (high - low), method, more, beside)
 
-    low, high = _hull(narrow, other, _ONE_SIGMA, Inference.shape)
+    low, high = _hull(narrow.shape(), others, Inference.shape)
     u_shape = 0.5 * (high - low)
-    between = _hull(wide, other, wide.level, Inference.shape)
+    between = _hull(shape, others, Inference.shape)
     return [
         of_field(STRENGTH, P_SCALE, "scale (63.2 % broken)"),
         record(
@@ -170,14 +188,11 @@ def _counted_otherwise(sample: Sample) -> Inference | None:
 
 
 def _hull(
-    given: Inference, other: Inference | None, level: float, ask: Callable[[Inference], Interval]
+    given: Interval, others: tuple[Inference, ...], ask: Callable[[Inference], Interval]
 ) -> tuple[float, float]:
-    """Interval that holds those of both ways of counting."""
-    found = ask(given)
-    if other is None:
-        return found.low, found.high
-    also = ask(replace(other, level=level))
-    return min(found.low, also.low), max(found.high, also.high)
+    """Interval that holds those of the other readings as well."""
+    found = [given, *(ask(replace(other, level=given.level)) for other in others)]
+    return min(i.low for i in found), max(i.high for i in found)
 
 
 def _of_both(given: Inference, other: Inference | None) -> tuple[Flag, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from deamat.twin.situations import permittivity, tension
+from deamat.twin.situations import breakdown, permittivity, tension
 from deamat.twin.situations.situation import Situation
 
 SITUATIONS: dict[str, Situation] = {
@@ -10,5 +10,6 @@ SITUATIONS: dict[str, Situation] = {
     for s in (
         *tension.SITUATIONS,
         *permittivity.SITUATIONS,
+        *breakdown.SITUATIONS,
     )
 }

@@ -5,7 +5,8 @@ import pytest
 
 from deamat.core.errors import FitRefused
 from deamat.estimators.weibull.fit import fit
-from deamat.estimators.weibull.goodness import anderson_darling, goodness_of_fit, low_outlier
+from deamat.estimators.weibull.goodness import curved, goodness_of_fit, low_outlier
+from deamat.estimators.weibull.reference import anderson_darling, reference, thinned
 from deamat.estimators.weibull.simulate import at_risk, standard_samples, withdrawals
 from tests.estimators.weibull.samples import CABLE_I, CABLE_II, simulated
 
@@ -113,3 +114,55 @@ def test_what_cannot_be_fitted_cannot_be_tested() -> None:
         goodness_of_fit([50.0, 60.0])
     with pytest.raises(FitRefused, match="all 3 values are censored"):
         low_outlier([50.0, 60.0, 70.0], [True, True, True])
+
+
+@pytest.mark.parametrize(("n", "stop_at"), [(8, None), (20, None), (20, 15)])
+def test_a_straight_plot_is_called_curved_as_rarely_as_it_says(n: int, stop_at: int | None) -> None:
+    x, censored = simulated(n, 1500, seed=65, stop_at=stop_at)
+    p = np.array([curved(v, c).p_value for v, c in zip(x, censored, strict=True)])
+    assert np.mean(p < 0.05) == pytest.approx(0.05, abs=0.02)
+    assert np.mean(p < 0.005) < 0.01
+
+
+def test_a_threshold_and_a_tail_of_weak_specimens_curve_the_plot_to_either_side() -> None:
+    rng = np.random.default_rng(66)
+    threshold = 40.0 + 30.0 * rng.weibull(2.0, (100, 60))
+    found = [curved(v) for v in threshold]
+    assert np.mean([f.p_value < 0.05 for f in found]) > 0.8
+    assert np.mean([f.score > 0.0 for f in found]) > 0.98
+    mixed = 70.0 * rng.weibull(9.0, (100, 60)) * np.where(np.arange(60) < 6, 0.4, 1.0)
+    found = [curved(v) for v in mixed]
+    assert np.mean([f.p_value < 0.05 for f in found]) > 0.9
+    assert all(f.score < 0.0 for f in found)
+
+
+def test_the_score_is_the_slope_of_the_likelihood_of_the_curved_form() -> None:
+    """By finite differences of the log-likelihood of y = (H^c - 1)/c, complete and censored."""
+    x, censored = CABLE_I, np.arange(20) > 15
+    x = np.sort(x)
+    x[16:] = x[15]
+    best = fit(x, censored)
+    y = best.shape * np.log(x / best.scale)
+
+    def log_likelihood(c: float) -> float:
+        hazard = np.log1p(c * y) / c  # ln H
+        density = np.where(censored, 0.0, hazard - np.log1p(c * y))
+        return float((density - np.exp(hazard)).sum())
+
+    slope = (log_likelihood(1e-5) - log_likelihood(-1e-5)) / 2e-5
+    assert curved(x, censored).score * np.sqrt(16.0) == pytest.approx(slope, rel=1e-4)
+
+
+def test_many_failures_are_thinned_with_their_withdrawals() -> None:
+    assert thinned((0, 1, 2), 5) == (0, 1, 2)
+    assert thinned((0,) * 1000, 400) == (0,) * 400
+    thin = thinned((1, 0) * 500, 400)
+    assert (len(thin), sum(thin)) == (400, 200)
+
+
+def test_the_distributions_hardly_change_beyond_four_hundred_failures() -> None:
+    x, _ = simulated(1500, 300, seed=67)
+    p = np.array([(goodness_of_fit(v).p_value, low_outlier(v).p_value) for v in x])
+    assert np.mean(p < 0.05, axis=0) == pytest.approx(0.05, abs=0.035)
+    assert np.mean(p < 0.5, axis=0) == pytest.approx(0.5, abs=0.09)
+    assert reference((0,) * 1500).lowest.mean() == pytest.approx(1.0 / 1500.0, rel=0.1)

@@ -75,3 +75,14 @@ def ramp_file(top_V: float = 5950.0, *, spike: bool = True, dt: float = 2.0) -> 
     amperes = np.zeros(volts.size)
     amperes[100] = 0.02 if spike else 0.0
     return recording(time_s=dt * np.arange(float(volts.size)), voltage_V=volts, current_A=amperes)
+
+
+def steps_file(step_V: float = 500.0, hold_s: float = 20.0, noise_V: float = 0.0) -> Recording:
+    """Held levels up to 6000 V, the last for half as long as the others, sampled at 2 s."""
+    levels = np.arange(step_V, 6000.0 + 1.0, step_V)
+    count = round(hold_s / 2.0)
+    volts = np.append(np.repeat(levels, count)[: -(count // 2)], [0.0, 0.0, 0.0])
+    volts = volts + noise_V * np.random.default_rng(4).standard_normal(volts.size)
+    amperes = np.full(volts.size, 2e-6)
+    amperes[-3] = 8e-3
+    return recording(time_s=2.0 * np.arange(float(volts.size)), voltage_V=volts, current_A=amperes)

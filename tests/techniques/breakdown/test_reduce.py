@@ -10,7 +10,7 @@ import pytest
 
 from deamat.core.quantity import Quantity
 from deamat.core.records import Recording, Specimen
-from tests.techniques.breakdown.breakdowns import MICROMETER, film, ramp_file, reduce
+from tests.techniques.breakdown.breakdowns import MICROMETER, film, ramp_file, reduce, steps_file
 from tests.techniques.curves import recording
 
 
@@ -97,17 +97,6 @@ def test_the_register_decides_where_the_log_does_not_tell() -> None:
         (value,) = reduce(row, ramp_file(spike=False)).values
         assert value.diagnostics["censored"] == censored
         assert "end-unsure" not in [f.name for f in value.flags]
-
-
-def steps_file(step_V: float = 500.0, hold_s: float = 20.0, noise_V: float = 0.0) -> Recording:
-    """Held levels up to 6000 V, the last for half as long as the others, sampled at 2 s."""
-    levels = np.arange(step_V, 6000.0 + 1.0, step_V)
-    count = round(hold_s / 2.0)
-    volts = np.append(np.repeat(levels, count)[: -(count // 2)], [0.0, 0.0, 0.0])
-    volts = volts + noise_V * np.random.default_rng(4).standard_normal(volts.size)
-    amperes = np.full(volts.size, 2e-6)
-    amperes[-3] = 8e-3
-    return recording(time_s=2.0 * np.arange(float(volts.size)), voltage_V=volts, current_A=amperes)
 
 
 @pytest.mark.parametrize("step_V", [250.0, 500.0, 1000.0])

@@ -59,7 +59,7 @@ def test_the_fit_is_the_maximum_likelihood_of_both_parameters() -> None:
         assert record.diagnostics["low_outlier"] == "none"
         assert float(record.diagnostics["goodness_p"]) > 0.05
     assert [f.name for f in found[STRENGTH].flags] == ["field-as-given"]
-    assert [f.name for f in found[B1].flags] == ["field-as-given", "extrapolated"]
+    assert [f.name for f in found[B1].flags] == ["field-as-given", "extrapolated", "form-untested"]
 
 
 def test_the_order_of_the_specimens_changes_nothing() -> None:
