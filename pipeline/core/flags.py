@@ -17,10 +17,10 @@ SEVERITIES: tuple[Severity, ...] = ("serious", "warning", "info")
 
 _SERIOUS = (
     "adhesion", "another-tip-fits-better", "contact", "copied-rows", "current-spikes",
-    "dates-disagree", "equal-files", "file-of-another-specimen", "flashover", "implausible",
-    "mixed-tests", "own-columns-disagree", "register-disagrees", "register-implausible",
-    "register-slip", "self-clearing", "slip", "speed-disagrees", "survivors", "swapped-files",
-    "unit-contradiction", "untared-load",
+    "dates-disagree", "equal-files", "file-of-another-specimen", "flashover",
+    "id-of-another-material", "implausible", "mixed-tests", "own-columns-disagree",
+    "register-disagrees", "register-implausible", "register-slip", "self-clearing", "slip",
+    "speed-disagrees", "survivors", "swapped-files", "unit-contradiction", "untared-load",
 )  # fmt: skip
 _WARNING = (
     "approximate-interval", "clean-again", "coarse-rounding", "coarse-sampling", "contradicting",

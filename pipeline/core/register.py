@@ -17,17 +17,20 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from deamat.core.dates import read_date
 from deamat.core.errors import RawFileError
 from deamat.core.instruments import Gauge
 from deamat.core.number_grammar import is_number
 from deamat.core.quantity import Quantity
 from deamat.core.records import Condition, Specimen
+from deamat.core.register_bounds import possible
 from deamat.core.register_columns import CONDITION_COLUMNS, Column, numeric_columns
 from deamat.core.slug import Spellings, label_fault, nearest_label, nearest_slug, slug_fault
 
 REGISTER_FILE = "specimens.csv"
 REGISTER_FILES = (REGISTER_FILE, "observations.csv")
 
+DATE_COLUMNS = ("cured_on", "tested_on")
 _TINIEST, _LARGEST = 1e-30, 1e30  # in SI: no measured number is smaller or larger
 _SHORTEST_m, _LONGEST_m = 1e-9, 1e3
 _LONGEST_SPECIMEN = 120
@@ -215,6 +218,16 @@ class _Rows:
         if fault := _specimen_fault(cells.get("specimen", "")):
             near = nearest_label(re.sub(r"[/\\]", "-", cells["specimen"]), _LONGEST_SPECIMEN)
             raise self._slip("specimen", cells, line, fault, near.lstrip(".-"))
+        for name in DATE_COLUMNS:
+            if cells.get(name):
+                try:
+                    read_date(cells[name])
+                except ValueError as error:
+                    at = self.header.index(name) + 1
+                    hint = "write it as 2022-01-31, or leave the cell empty"
+                    raise RawFileError(
+                        self.path, str(error), line, at, cells[name], hint
+                    ) from error
         file = cells.get("file", "")
         if file.startswith("/") or ".." in file.split("/") or "\\" in file:
             raise self._slip(
@@ -285,6 +298,13 @@ class _Rows:
                 self.path, "a temperature below absolute zero", line, column.index + 1, cell,
                 "leave the cell empty where it was not recorded",
             )  # fmt: skip
+        limits = possible(name)
+        if limits is not None and not limits[0] <= value <= limits[1]:
+            reason = (
+                f"{name} of {value:.4g} cannot be: it is between {limits[0]:g} and {limits[1]:g}"
+            )
+            hint = "check the unit and the decimal point"
+            raise RawFileError(self.path, reason, line, column.index + 1, cell, hint)
         stem = name.rpartition("_")[0]
         of_length = Gauge() if column.unit == "m" else None
         gauge = self.gauges.get(stem, of_length)

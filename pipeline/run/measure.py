@@ -7,8 +7,10 @@ from dataclasses import dataclass, field
 from graphlib import TopologicalSorter
 from typing import TypeVar
 
+from deamat.consistency.notes import noted
 from deamat.core.config import Config
 from deamat.core.config import digest as config_digest
+from deamat.core.flags import Flag
 from deamat.core.instruments import Machine
 from deamat.core.ledger import Failure
 from deamat.core.properties import REFERENCE_AGE
@@ -34,12 +36,14 @@ class Measured:
     Parameters
     ----------
     reduced : None where a dry run does not know it yet, or where it failed
+    flags : what comparing it with its row and with others showed
     """
 
     specimen: Specimen
     key: str
     reduced: Reduced | None
     failure: Failure | None = None
+    flags: tuple[Flag, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,7 +178,8 @@ def summarise(
                 run.unmade |= {(*place, property_) for property_ in technique.yields}
         else:
             context = Context(config, Machine(), {}, laws=laws)
-            made = _summary(technique, bare, context) if good else None
+            flags = {m.specimen.id: m.flags for m in members}
+            made = _summary(technique, bare, context, flags) if good else None
             if isinstance(made, Failure):
                 summary, key = None, run.fail(made)
             else:
@@ -186,10 +191,15 @@ def summarise(
     return result
 
 
-def _summary(technique: AnyTechnique, group: Group, context: Context) -> Summary | Failure:
+def _summary(
+    technique: AnyTechnique,
+    group: Group,
+    context: Context,
+    flags: Mapping[str, Sequence[Flag]],
+) -> Summary | Failure:
     return attempt(
         "summary", group.subject, group.files,
-        lambda: technique.summarise(group.measurements, context),
+        lambda: noted(technique.summarise(group.measurements, context), flags),
     )  # fmt: skip
 
 

@@ -20,6 +20,7 @@ from deamat.core.ledger import Failure, FileEntry, Provenance
 from deamat.core.slug import Spellings
 from deamat.run.boundary import attempt
 from deamat.run.build_cache import BuildCache, key_of
+from deamat.run.compare import compare
 from deamat.run.contents import contents_id
 from deamat.run.describe import describe
 from deamat.run.folders import Folders, Input, Stat, locate, name_as_text
@@ -96,7 +97,7 @@ def process(
         groups: list[Group] = []
         measured: list[Measured] = []
         for technique in in_order(TECHNIQUES):
-            mine = measure(technique, run)
+            mine = compare(measure(technique, run), run)
             measured += mine
             groups += summarise(technique, mine, run)
         files = _account(surveys, measured)

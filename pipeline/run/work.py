@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from deamat.consistency.seen import Seen, look
 from deamat.core.errors import ConfigError, RawFileError
 from deamat.core.ledger import Failure
 from deamat.core.records import Flag, Measurement, Recording, Specimen
@@ -56,11 +57,17 @@ class Task:
 
 @dataclass(frozen=True, slots=True)
 class Reduced:
-    """What came of a task: a measurement or an error, and the reader that was used."""
+    """What came of a task: a measurement or an error, and the reader that was used.
+
+    Parameters
+    ----------
+    seen : what of its file is held against its row and other files; None without a measured file
+    """
 
     measurement: Measurement | None
     error: RawFileError | None
     reader: str
+    seen: Seen | None = None
 
 
 def attempt_one(task: Task) -> Reduced | Failure:
@@ -85,7 +92,8 @@ def reduce_one(task: Task) -> Reduced:
         measurement = technique.reduce(task.specimen, recording, task.context)
     except RawFileError as error:
         return Reduced(None, error, reader)
-    return Reduced(_flagged(measurement, recording, task), None, reader)
+    seen = None if recording is None else look(recording, task.specimen)
+    return Reduced(_flagged(measurement, recording, task), None, reader, seen)
 
 
 def source_of(specimen: Specimen) -> str:

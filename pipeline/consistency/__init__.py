@@ -1,0 +1,1 @@
+"""Holds statements against each other: rows, files, siblings and dates."""
