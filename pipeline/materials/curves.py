@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Collection, Mapping, Sequence
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -82,9 +83,10 @@ def write_curves(
     for measurement in curves:
         _check(measurement)
     units = {name: unit_of_column(name) for name in sorted({n for m in curves for n in m.curve})}
-    path.unlink(missing_ok=True)
+    # In memory: HDF5 crashes the whole process where a disk is full.
+    image = BytesIO()
     # A fixed format version: `latest` would change the bytes with the library.
-    with h5py.File(path, "w", libver=("v110", "v110")) as file:
+    with h5py.File(image, "w", libver=("v110", "v110")) as file:
         file.attrs["title"] = "deamat: reduced curves"
         file.attrs["version"] = VERSION
         for label in LABELS:
@@ -97,6 +99,8 @@ def write_curves(
             dataset.attrs["units"] = unit
             offsets = np.cumsum([0, *map(len, pieces)], dtype="<i8")
             _put(file, f"{column}.offsets", offsets)
+    path.unlink(missing_ok=True)
+    path.write_bytes(image.getbuffer())
 
 
 _NOTHING: FloatArray = np.empty(0)

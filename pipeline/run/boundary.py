@@ -25,6 +25,7 @@ _ADDRESS = re.compile(r"\b0x[0-9a-f]{6,}")
 _OF_THE_MACHINE = frozenset(
     {
         *(errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EACCES, errno.EPERM, errno.EIO),
+        *(errno.EFBIG, errno.ENOMEM),
         *(errno.EMFILE, errno.ENFILE),
     }
 )
