@@ -52,7 +52,7 @@ class BreakdownConfig(Declared):
         "dip; a smaller one without a dip is flagged alone",
     )
     arc_s: float = Field(
-        default=0.1,
+        default=0.02,
         ge=0,
         description="the current of a breakdown lasts at least this long: a log with longer steps "
         "may miss it, and a voltage that collapses without a current is then counted as broken "

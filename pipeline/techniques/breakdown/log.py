@@ -20,6 +20,7 @@ from deamat.techniques.breakdown.seen import (
     declared_censored,
     refuse_beyond_limit,
 )
+from deamat.techniques.breakdown.signals import median
 from deamat.techniques.shared.outcome import line_span
 
 _NOISE_FLAG = 0.002  # of the voltage: a noise that is worth saying
@@ -39,7 +40,7 @@ def seen_in_log(specimen: Specimen, recording: Recording, config: BreakdownConfi
         or it rose in fewer than five samples
     """
     time_s, voltage_V, current_A = _signals(recording, config)
-    interval_s = float(np.median(np.diff(time_s))) if time_s.size > 1 else 0.0
+    interval_s = median(time_s[1:] - time_s[:-1]) if time_s.size > 1 else 0.0
     found = find_breakdown(voltage_V, current_A, interval_s, config.criteria())
     steps = find_steps(time_s, voltage_V, found.last, config.least_hold_s)
     rise = (

@@ -18,8 +18,10 @@ from numpy.typing import NDArray
 from deamat.core.arrays import FloatArray
 from deamat.techniques.breakdown.signals import (
     current_jumps,
+    deviation,
     foot,
     level_at,
+    median,
     steadied,
     voltage_noise,
 )
@@ -264,9 +266,8 @@ class _Search:
         if self.current_A is None:
             return np.inf
         before = self.current_A[: max(at - 1, 1)]
-        usual = float(np.median(before))
-        noise = 1.4826 * float(np.median(np.abs(before - usual)))
-        return max(self.criteria.spike_A, abs(usual) + self.criteria.spike_noise * noise)
+        stands_out = abs(median(before)) + self.criteria.spike_noise * deviation(before)
+        return max(self.criteria.spike_A, stands_out)
 
     def _back(self, first: int, before_V: float) -> int | None:
         """Sample at which the voltage has come back, if it has."""
@@ -326,5 +327,5 @@ def _next(places: NDArray[np.intp], at: int, none: int) -> int:
 
 def _last_step(rising_V: FloatArray) -> float:
     """Rise in one sampling step just before the end: the median of the last ones."""
-    steps = np.diff(rising_V[-11:])
-    return max(float(np.median(steps)), 0.0) if steps.size else 0.0
+    last = rising_V[-11:]
+    return max(median(last[1:] - last[:-1]), 0.0) if last.size > 1 else 0.0

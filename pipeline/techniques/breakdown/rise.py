@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
-from deamat.techniques.breakdown.signals import voltage_noise
+from deamat.techniques.breakdown.signals import deviation, median, voltage_noise
 
 _FEWEST = 5  # samples with voltage on them, below which there is no ramp to speak of
 _PARTS = 8  # of the ramp, whose rates of rise are compared
@@ -127,15 +127,17 @@ def find_steps(
     -------
     None where the rise is no staircase
     """
-    t, v = _blocks(time_s[: last + 1], voltage_V[: last + 1])
+    t, v = time_s[: last + 1], voltage_V[: last + 1]
+    if v.size < 2 * _FEWEST_LEVELS or median(v[1:] - v[:-1]) > 0.5 * float(v[-1] - v[0]) / v.size:
+        return None  # most samples rise as all do: a ramp
+    t, v = _blocks(t, v)
     begun = np.flatnonzero(v >= _FOOT * v.max(initial=0.0))
     if begun.size < 2 * _FEWEST_LEVELS:
         return None
     t, v = t[begun[0] :], v[begun[0] :]
     change, top = np.diff(v), float(v.max())
-    usual = float(np.median(change))
-    deviation = 1.4826 * float(np.median(np.abs(change - usual)))
-    up = change - usual > max(_STEP_NOISE * deviation, 0.5 * _LEAST_STEP * top)
+    usual, noise_V = median(change), deviation(change)
+    up = change - usual > max(_STEP_NOISE * noise_V, 0.5 * _LEAST_STEP * top)
     if not _FEWEST_LEVELS - 1 <= np.count_nonzero(up) <= 0.5 * up.size:
         return None
     held = _runs(up)
@@ -156,7 +158,7 @@ def find_steps(
         size = 1
     return Steps(
         step_V, float(np.median(holds)), values[-1], values[-2], len(values), values[0],
-        float(t[-1] - t[0]), deviation / (2.0 * size) ** 0.5,
+        float(t[-1] - t[0]), noise_V / (2.0 * size) ** 0.5,
     )  # fmt: skip
 
 
@@ -181,9 +183,9 @@ def _blocks(t: FloatArray, v: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 def _start(rising_V: FloatArray, noise_V: float) -> int:
     """First sample of the slow rise: after the last jump, else where there is voltage at all."""
-    steps = np.diff(rising_V)
+    steps = rising_V[1:] - rising_V[:-1]
     top = float(rising_V[-1])
-    usual = float(np.median(steps)) if steps.size else 0.0
+    usual = median(steps) if steps.size else 0.0
     up = np.flatnonzero(steps > max(_JUMP * top, _JUMP_STEPS * usual, _NOISE * noise_V))
     low = np.flatnonzero(rising_V < _FOOT * top)
     # a jump back up after a flashover is no start: only one from below everything before counts

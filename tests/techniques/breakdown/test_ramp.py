@@ -33,7 +33,7 @@ def current(voltage_V: FloatArray, *spikes: tuple[int, float]) -> FloatArray:
 
 
 def end(voltage_V: FloatArray, current_A: FloatArray | None = None) -> Breakdown:
-    return find_breakdown(voltage_V, current_A, 0.05, CRITERIA)
+    return find_breakdown(voltage_V, current_A, 0.01, CRITERIA)
 
 
 @pytest.mark.parametrize("spike_at", [99, 100, 102])
@@ -143,7 +143,7 @@ def test_a_log_too_slow_for_the_arc_does_not_tell_a_collapse_from_a_switch() -> 
     volts = ramp(0.0, 0.0, 0.0)
     found = find_breakdown(volts, current(volts), 1.0, CRITERIA)
     assert (found.end, found.broken, found.sure) == ("collapse without current", True, False)
-    fast = find_breakdown(volts, current(volts), 0.05, CRITERIA)
+    fast = find_breakdown(volts, current(volts), 0.01, CRITERIA)
     assert (fast.end, fast.broken, fast.sure) == ("turned down", False, True)
 
 

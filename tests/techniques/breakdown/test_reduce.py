@@ -52,7 +52,7 @@ def test_polarity_does_not_matter_and_thickness_divides() -> None:
     [
         ({"dt": 1.0}, {"fast-rise": "it broke after 99 s; a slow rise takes more than 120 s"}),
         (
-            {"spike": False, "dt": 0.1},
+            {"spike": False, "dt": 0.01},
             {
                 "right-censored": "the voltage was turned down, no current spiked: it bore this "
                 "field unbroken"
