@@ -26,7 +26,8 @@ _WARNING = (
     "approximate-interval", "clean-again", "coarse-rounding", "coarse-sampling", "contradicting",
     "cross-validation", "curved", "deep-indentation", "displacement-zeroed", "end-unsure",
     "extensometer", "falls", "few-failures", "few-independent-samples", "grips",
-    "header-disagrees", "identical-rows", "law-ends", "low-outlier", "method-changed",
+    "header-disagrees", "identical-rows", "label-by-unit", "law-ends", "low-outlier",
+    "method-changed",
     "missing-rows", "not-in-every-reading", "not-one-viscosity", "not-positive", "outlier",
     "outlying-readings", "outside-torque-window", "over-range", "poor-fit", "preload",
     "rate-of-rise", "register-outlier", "runs-differ", "series-resistance", "setting-changed",
@@ -35,7 +36,8 @@ _WARNING = (
     "trailing-zeros", "unit-of-another-kind", "unregistered", "voltage-noise", "wide-interval",
 )  # fmt: skip
 _INFO = (
-    "counted-both-ways", "edge-field", "electrode-aspect", "extrapolated", "fast-rise",
+    "columns-not-used", "counted-both-ways", "edge-field", "electrode-aspect", "extrapolated",
+    "fast-rise",
     "field-as-given", "finite-height", "height-unknown", "high-start", "ideal-tip-area",
     "interpolated", "level-declared", "loss-unresolved", "mac-roman", "meter-limit", "no-break",
     "no-current-channel", "no-ramp", "right-censored", "single-run", "single-specimen",

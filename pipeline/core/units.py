@@ -20,6 +20,8 @@ UNITS: dict[str, tuple[str, float, float]] = {
     "1": ("1", 1.0, 0.0),
     "-": ("1", 1.0, 0.0),
     "mm/mm": ("1", 1.0, 0.0),
+    "m/m": ("1", 1.0, 0.0),
+    "in/in": ("1", 1.0, 0.0),
     "%": ("1", 0.01, 0.0),
     "percent": ("1", 0.01, 0.0),
     "m": ("m", 1.0, 0.0),
@@ -28,28 +30,41 @@ UNITS: dict[str, tuple[str, float, float]] = {
     "um": ("m", 1e-6, 0.0),
     "nm": ("m", 1e-9, 0.0),
     "in": ("m", 0.0254, 0.0),
+    "inch": ("m", 0.0254, 0.0),
+    "mil": ("m", 2.54e-5, 0.0),  # a thousandth of an inch
     "m2": ("m2", 1.0, 0.0),
     "cm2": ("m2", 1e-4, 0.0),
     "mm2": ("m2", 1e-6, 0.0),
     "s": ("s", 1.0, 0.0),
     "sec": ("s", 1.0, 0.0),
+    "second": ("s", 1.0, 0.0),
     "ms": ("s", 1e-3, 0.0),
+    "us": ("s", 1e-6, 0.0),
     "min": ("s", 60.0, 0.0),
     "h": ("s", 3600.0, 0.0),
     "N": ("N", 1.0, 0.0),
     "mN": ("N", 1e-3, 0.0),
     "uN": ("N", 1e-6, 0.0),
     "kN": ("N", 1e3, 0.0),
+    "cN": ("N", 1e-2, 0.0),
+    "nN": ("N", 1e-9, 0.0),
+    "dyn": ("N", 1e-5, 0.0),
     "gf": ("N", 9.80665e-3, 0.0),  # what force gauges can be set to; exact by definition
     "kgf": ("N", 9.80665, 0.0),
     "ozf": ("N", 0.27801385095378125, 0.0),
     "lbf": ("N", 4.4482216152605, 0.0),
     "Pa": ("Pa", 1.0, 0.0),
+    "mPa": ("Pa", 1e-3, 0.0),
     "kPa": ("Pa", 1e3, 0.0),
     "MPa": ("Pa", 1e6, 0.0),
     "GPa": ("Pa", 1e9, 0.0),
     "N/mm2": ("Pa", 1e6, 0.0),
     "N/mm^2": ("Pa", 1e6, 0.0),
+    "N/m2": ("Pa", 1.0, 0.0),
+    "N/cm2": ("Pa", 1e4, 0.0),
+    "kgf/cm2": ("Pa", 98066.5, 0.0),
+    "dyn/cm2": ("Pa", 0.1, 0.0),
+    "bar": ("Pa", 1e5, 0.0),
     "psi": ("Pa", 4.4482216152605 / 0.0254**2, 0.0),
     "J": ("J", 1.0, 0.0),
     "mJ": ("J", 1e-3, 0.0),
@@ -57,6 +72,10 @@ UNITS: dict[str, tuple[str, float, float]] = {
     "g": ("kg", 1e-3, 0.0),
     "mg": ("kg", 1e-6, 0.0),
     "kg/m3": ("kg/m3", 1.0, 0.0),
+    "g/cm3": ("kg/m3", 1e3, 0.0),
+    "N/m": ("N/m", 1.0, 0.0),
+    "mN/m": ("N/m", 1e-3, 0.0),
+    "rad/s": ("rad/s", 1.0, 0.0),
     "m/s": ("m/s", 1.0, 0.0),
     "mm/s": ("m/s", 1e-3, 0.0),
     "mm/min": ("m/s", 1e-3 / 60.0, 0.0),
@@ -72,16 +91,20 @@ UNITS: dict[str, tuple[str, float, float]] = {
     "uNm": ("N.m", 1e-6, 0.0),
     "mrad": ("rad", 1e-3, 0.0),
     "s^-1": ("1/s", 1.0, 0.0),
+    "s-1": ("1/s", 1.0, 0.0),
     "1/min": ("rpm", 1.0, 0.0),
     "Pa s": ("Pa.s", 1.0, 0.0),
     "rpm": ("rpm", 1.0, 0.0),  # a setting of the viscometer, kept as it is spoken
     "Hz": ("Hz", 1.0, 0.0),
+    "mHz": ("Hz", 1e-3, 0.0),
     "kHz": ("Hz", 1e3, 0.0),
+    "MHz": ("Hz", 1e6, 0.0),
     "V": ("V", 1.0, 0.0),
     "mV": ("V", 1e-3, 0.0),
     "kV": ("V", 1e3, 0.0),
     "A": ("A", 1.0, 0.0),
     "mA": ("A", 1e-3, 0.0),
+    "nA": ("A", 1e-9, 0.0),
     "uA": ("A", 1e-6, 0.0),
     "F": ("F", 1.0, 0.0),
     "uF": ("F", 1e-6, 0.0),
@@ -104,14 +127,19 @@ UNITS: dict[str, tuple[str, float, float]] = {
     "Pas": ("Pa.s", 1.0, 0.0),
     "mPa.s": ("Pa.s", 1e-3, 0.0),
     "mPas": ("Pa.s", 1e-3, 0.0),
+    "mPa s": ("Pa.s", 1e-3, 0.0),
+    "P": ("Pa.s", 0.1, 0.0),  # poise
+    "cP": ("Pa.s", 1e-3, 0.0),
     "K": ("K", 1.0, 0.0),
     "C": ("K", 1.0, _KELVIN_AT_0_C),
     "degC": ("K", 1.0, _KELVIN_AT_0_C),
+    "degF": ("K", 5.0 / 9.0, _KELVIN_AT_0_C - 32.0 * 5.0 / 9.0),
 }
 
 _SPELLINGS = str.maketrans(
-    {"\u00b5": "u", "\u03bc": "u", "\u00b2": "2", "\u00b3": "3", "\u00b0": "", "\u00b7": "."}
-)
+    {"\u00b5": "u", "\u03bc": "u", "\u00b2": "2", "\u00b3": "3", "\u00b9": "1", "\u207b": "-",
+     "\u00b0": "", "\u00b7": ".", "\u22c5": ".", "\u03a9": "ohm", "\u2126": "ohm"}
+)  # fmt: skip
 
 _WRITTEN = re.compile(rf"\s*({NUMBER.pattern})\s*([^\W\d_]\S*|%)?\s*")
 
@@ -120,9 +148,18 @@ class UnknownUnit(PipelineError):
     """A unit that the closed table does not hold."""
 
 
+def _spelled(unit: str) -> str:
+    plain = unit.strip()
+    if plain == "\u00b0":
+        return "deg"
+    if plain.startswith(("\u00b0F", "\u2109")):
+        return "degF"  # without its sign it would be a farad
+    return plain.translate(_SPELLINGS)
+
+
 def known(unit: str) -> bool:
     """Say whether the table holds this unit, in any of its spellings."""
-    return unit.strip().translate(_SPELLINGS) in UNITS
+    return _spelled(unit) in UNITS
 
 
 def si_factor(unit: str) -> tuple[str, float, float]:
@@ -132,7 +169,7 @@ def si_factor(unit: str) -> tuple[str, float, float]:
     ------
     UnknownUnit : the unit is not in the table; the message names the nearest ones
     """
-    spelled = unit.strip().translate(_SPELLINGS)
+    spelled = _spelled(unit)
     try:
         return UNITS[spelled]
     except KeyError:

@@ -4,7 +4,7 @@ To add a format: write `formats/<module>.py` with the headings Usage, Format, Co
 and Metadata in its docstring and one `FORMAT = Format(...)`, and add its line below. Its recogniser
 must look at structure, cheaply, and must not accept what another one accepts: `detect` refuses a
 file that two formats claim. Most tables need only a layout (`header`) and a dialect (`cells`);
-`table.read_table` does the rest.
+`table.read_table` does the rest. `plain` is asked where none of these recognises a file.
 """
 
 from __future__ import annotations

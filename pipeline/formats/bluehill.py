@@ -32,11 +32,12 @@ from __future__ import annotations
 from deamat.core.records import Recording
 from deamat.formats.cells import Dialect
 from deamat.formats.columns import Reader
-from deamat.formats.format import Format
+from deamat.formats.format import MECHANICS, Format
 from deamat.formats.header import Layout, two_row_layout, units_row
 from deamat.formats.rawfile import Head, RawFile
 from deamat.formats.table import read_plain
 
+_CURVE = ("displacement_m", "force_N", "nominal_strain", "nominal_stress_Pa")
 _READER = Reader("bluehill", Dialect(",", quoted=True))
 
 
@@ -46,7 +47,9 @@ def _layout(head: Head) -> Layout | None:
 
 
 def _recognises(head: Head) -> bool:
-    return head.once(_layout) is not None
+    layout = head.once(_layout)
+    # labels in other languages are the plain table's to read
+    return layout is not None and layout.has(*_CURVE)
 
 
 def _read(file: RawFile) -> Recording:
@@ -59,4 +62,5 @@ FORMAT = Format(
     _recognises,
     _read,
     _READER.dialect.delimiter,
+    MECHANICS,
 )

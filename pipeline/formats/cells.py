@@ -152,7 +152,7 @@ def _split(
     if len(fields) == columns and (dialect.quoted or not stray):
         return fields
     if not any(looks_numeric(field) for field in fields):
-        raise _text_row(file, line, at)
+        raise text_row(file, line, at)
     if stray and not dialect.quoted:
         raise RawFileError(
             file.path,
@@ -207,16 +207,16 @@ def _refusal(
     file: RawFile, line: str, at: int, fields: list[str], column: int, dialect: Dialect
 ) -> RawFileError:
     """Say why a field is not a number."""
-    found = _why(fields[column], dialect)
+    found = why_not(fields[column], dialect)
     if found is None and not any(looks_numeric(field) for field in fields):
-        return _text_row(file, line, at)
+        return text_row(file, line, at)
     reason, hint = found or _NOT_A_NUMBER
     return RawFileError(
         file.path, reason, line=at, column=column + 1, value=fields[column], hint=hint
     )
 
 
-def _why(field: str, dialect: Dialect) -> tuple[str, str] | None:
+def why_not(field: str, dialect: Dialect) -> tuple[str, str] | None:
     """Return reason and hint for a field that `_value` does not read, None if it is no number."""
     plain = field.strip('"') if dialect.quoted else field
     if dialect.decimal == "," and "." in plain and is_number(plain):
@@ -244,7 +244,8 @@ def _why(field: str, dialect: Dialect) -> tuple[str, str] | None:
     return None
 
 
-def _text_row(file: RawFile, line: str, at: int) -> RawFileError:
+def text_row(file: RawFile, line: str, at: int) -> RawFileError:
+    """Refuse a row of text between the rows, perhaps the header once more."""
     header = line.strip() in (known.strip() for known in file.head[: at - 1])
     return RawFileError(
         file.path,

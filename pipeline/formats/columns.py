@@ -8,6 +8,7 @@ from functools import lru_cache
 
 from deamat.core.errors import RawFileError
 from deamat.core.records import Flag
+from deamat.core.unit_spellings import unit_as_written
 from deamat.core.units import UnknownUnit, si_factor
 from deamat.formats.cells import Dialect
 from deamat.formats.documentation import contradictions
@@ -119,7 +120,7 @@ def _unit(layout: Layout, reader: Reader, column: int, written: str) -> str:
 
 def _conversion(layout: Layout, column: int, unit: str) -> tuple[str, float, float]:
     try:
-        return si_factor(unit)
+        return si_factor(unit_as_written(unit) or unit)
     except UnknownUnit as error:
         raise RawFileError(
             "",

@@ -9,37 +9,82 @@ import difflib
 from collections import Counter
 
 from deamat.core.errors import ConfigError, RawFileError
-from deamat.formats import FORMATS
+from deamat.formats import FORMATS, plain
 from deamat.formats.format import Format
 from deamat.formats.rawfile import Head, RawFile
 
+_HINT = (
+    "export a table with a row of labels and the unit of each column, such as `Load (N)`, or name "
+    "the format in the register's `format` column"
+)
+_AS_TEXT = "export the data as text (CSV) and register that file"
+# how files start that are no text, and what to do with them
+_BINARY = {
+    b"\xd0\xcf\x11\xe0": ("an Excel workbook of the old form (.xls)", "save it as .xlsx or CSV"),
+    b"PK\x03\x04": ("an archive, perhaps an Excel workbook", "save the sheet as CSV"),
+    b"TDSm": ("a LabVIEW measurement in binary form (.tdms)", _AS_TEXT),
+    b"\x89HDF": ("an HDF5 file", _AS_TEXT),
+    b"%PDF": ("a PDF document", _AS_TEXT),
+    b"\x1f\x8b": ("a compressed file", "unpack it and register what is inside"),
+}
 _DELIMITERS = {"tab": "\t", "semicolon": ";", "comma": ","}
 
 
 def detect(file: RawFile) -> Format:
-    """Return the one format that recognises the head of a file.
+    """Return the one format that recognises the head of a file, or that of any plain table.
 
     Raises
     ------
-    RawFileError : none does, or several do; says what was found and which formats there are
+    RawFileError : none does, or several do; says what was found, and what is missing of the
+        nearest table
     """
+    _refuse_binary(file)
     matching = file.once(_recognising)
     if len(matching) == 1:
-        return matching[0]
-    known = ", ".join(form.name for form in FORMATS)
+        return matching[0] if _is_for(matching[0], file) else _plain_or(matching[0], file)
     if not file.body.strip():
         raise RawFileError(file.path, "the file is empty", hint="export the file again")
     if matching:
-        reason = f"several formats recognise this file: {', '.join(f.name for f in matching)}"
-    else:
-        reason = f"no format recognises this file; there are {known}"
-    raise RawFileError(
-        file.path,
-        f"{reason} ({_found(file)})",
-        line=1,
-        value=file.head[0][:60],
-        hint="name the format in the register's `format` column, or export in one of these forms",
-    )
+        names = ", ".join(form.name for form in matching)
+        raise RawFileError(
+            file.path,
+            f"several formats recognise this file: {names} ({_found(file)})",
+            line=1,
+            value=file.head[0][:60],
+            hint="name the format in the register's `format` column",
+        )
+    try:
+        plain.understood(file)
+    except RawFileError as error:
+        raise RawFileError(
+            file.path,
+            f"no format recognises this file: {error.reason} ({_found(file)})",
+            line=error.line or 1,
+            value=error.value or file.head[(error.line or 1) - 1 :][:1][0][:60],
+            hint=error.hint or _HINT,
+        ) from error
+    return plain.FORMAT
+
+
+def _is_for(form: Format, file: RawFile) -> bool:
+    return not (form.techniques and file.technique) or file.technique in form.techniques
+
+
+def _plain_or(form: Format, file: RawFile) -> Format:
+    """A testing machine's table in another technique's register means that technique's words."""
+    try:
+        plain.understood(file)
+    except RawFileError:
+        return form
+    return plain.FORMAT
+
+
+def _refuse_binary(file: RawFile) -> None:
+    for start, (what, hint) in _BINARY.items():
+        if file.data.startswith(start):
+            raise RawFileError(
+                file.path, f"no format recognises this file: it is {what}", hint=hint
+            )
 
 
 def _recognising(head: Head) -> tuple[Format, ...]:
@@ -54,10 +99,10 @@ def by_name(name: str) -> Format:
     ------
     ConfigError : there is no such format; names the nearest one
     """
-    for form in FORMATS:
+    for form in (*FORMATS, plain.FORMAT):
         if form.name == name:
             return form
-    names = [form.name for form in FORMATS]
+    names = [form.name for form in (*FORMATS, plain.FORMAT)]
     near = difflib.get_close_matches(name, names, n=1)
     hint = f"; did you mean {near[0]}?" if near else ""
     raise ConfigError(f"there is no format {name!r}; there are {', '.join(names)}{hint}")

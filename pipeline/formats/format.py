@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from deamat.core.records import Recording
 from deamat.formats.rawfile import Head, RawFile
 
+MECHANICS = ("compression", "tension")
+
 
 @dataclass(frozen=True, slots=True)
 class Format:
@@ -21,6 +23,7 @@ class Format:
         numbers it may look at what parts the numbers, not at the numbers
     read : the whole file to a Recording, or `RawFileError`
     delimiter : of its tables: where the head holds none, nobody needs to ask `recognises`
+    techniques : for which it is written, empty for any; elsewhere its files are plain tables
     """
 
     name: str
@@ -28,3 +31,4 @@ class Format:
     recognises: Callable[[Head], bool]
     read: Callable[[RawFile], Recording]
     delimiter: str = ""
+    techniques: tuple[str, ...] = ()

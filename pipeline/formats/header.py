@@ -6,7 +6,7 @@ Everything here looks at structure only, on the few lines of `RawFile.head`.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 
 from deamat.core.units import known
@@ -45,6 +45,20 @@ class Layout:
         """Say whether a label means one of these quantities (`force_N`)."""
         found = (meaning(label) for label in self.labels)
         return any(known is not None and known[1] in quantities for known in found)
+
+    def has_load(self, unwritten: Collection[str] = ()) -> bool:
+        """Say whether this is a machine's curve and nothing but columns of quantities.
+
+        A counter without a unit makes it a plain table, in which such columns are notes.
+
+        Parameters
+        ----------
+        unwritten : labels in lower case that need no unit
+        """
+        return self.has("force_N", "nominal_stress_Pa", "true_stress_Pa") and all(
+            unit or meaning(label) is not None or label.casefold() in unwritten
+            for label, unit in zip(self.labels, self.units, strict=True)
+        )
 
 
 def split(line: str, delimiter: str) -> list[str]:

@@ -31,7 +31,7 @@ from __future__ import annotations
 from deamat.core.records import Recording
 from deamat.formats.cells import Dialect
 from deamat.formats.columns import Reader
-from deamat.formats.format import Format
+from deamat.formats.format import MECHANICS, Format
 from deamat.formats.header import Layout, inline_layout, two_row_layout, units_row
 from deamat.formats.rawfile import Head, RawFile
 from deamat.formats.table import read_plain
@@ -52,7 +52,7 @@ def _recognises(head: Head) -> bool:
     if layout is None or {"machine extension", "depth"} & {*map(str.casefold, layout.labels)}:
         return False
     rows = "".join(head[layout.rows :])
-    return rows.count(",") >= rows.count(".") and layout.has("force_N", "nominal_stress_Pa")
+    return rows.count(",") >= rows.count(".") and layout.has_load()
 
 
 def _read(file: RawFile) -> Recording:
@@ -65,4 +65,5 @@ FORMAT = Format(
     _recognises,
     _read,
     _READER.dialect.delimiter,
+    MECHANICS,
 )

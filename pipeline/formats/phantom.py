@@ -34,7 +34,7 @@ from deamat.core.records import Recording
 from deamat.formats.cells import Dialect
 from deamat.formats.columns import Reader
 from deamat.formats.documentation import stated_units
-from deamat.formats.format import Format
+from deamat.formats.format import MECHANICS, Format
 from deamat.formats.header import Layout, inline_layout, notes
 from deamat.formats.rawfile import Head, RawFile
 from deamat.formats.table import read_table, required
@@ -48,7 +48,7 @@ def _layout(head: Head) -> Layout | None:
 
 def _recognises(head: Head) -> bool:
     layout = head.once(_layout)
-    return layout is not None and layout.has("force_N", "nominal_stress_Pa", "true_stress_Pa")
+    return layout is not None and layout.has_load(_READER.unwritten)
 
 
 def _read(file: RawFile) -> Recording:
@@ -63,4 +63,5 @@ FORMAT = Format(
     _recognises,
     _read,
     _READER.dialect.delimiter,
+    MECHANICS,
 )

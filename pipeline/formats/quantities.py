@@ -1,7 +1,7 @@
 """What testing machines call the quantities that techniques need, and the names they get here.
 
-A closed table: a column whose label is not listed keeps its own name, so that nothing is taken
-for a force because it looks like one.
+A closed table (`vocabulary.toml`): a column whose label is not listed keeps its own name, so that
+nothing is taken for a force because it looks like one.
 """
 
 from __future__ import annotations
@@ -9,93 +9,23 @@ from __future__ import annotations
 import re
 from functools import lru_cache
 
+from deamat.formats.vocabulary import vocabulary
+
+
+def _standard() -> dict[str, tuple[str, tuple[str, ...]]]:
+    seen: set[str] = set()
+    found = {}
+    for name, words in vocabulary().items():
+        if words.general:
+            labels = tuple(label for label in words.labels if label not in seen)
+            seen.update(labels)  # a label of two quantities means the one listed first
+            found[name] = (words.unit, labels)
+    return found
+
+
 # name in SI -> (SI unit, labels in order of preference); of two columns in one file that mean the
 # same quantity the one listed first gets the name, the other keeps its own
-STANDARD: dict[str, tuple[str, tuple[str, ...]]] = {
-    "time_s": (
-        "s",
-        ("time", "test time", "running time", "elapsed time", "zeit", "prüfzeit"),
-    ),
-    "displacement_m": (
-        "m",
-        (
-            "displacement",
-            "extension",
-            "compression",
-            "compressive extension",
-            "compressive displacement",
-            "tensile extension",
-            "tensile displacement",
-            "machine extension",
-            "crosshead",
-            "crosshead displacement",
-            "axial displacement",
-            "travel",
-            "standard travel",
-            "standardweg",
-            "stroke",
-            "position",
-            "standard extensometer",
-        ),
-    ),
-    "force_N": (
-        "N",
-        (
-            "force",
-            "load",
-            "compressive load",
-            "tensile load",
-            "axial force",
-            "standard force",
-            "standard load cell",
-            "standardkraft",
-            "kraft",
-        ),
-    ),
-    "nominal_strain": (
-        "1",
-        (
-            "engineering strain",
-            "nominal strain",
-            "compressive strain",
-            "tensile strain",
-            "strain",
-            "dehnung",
-        ),
-    ),
-    "extensometer_strain": (
-        "1",
-        (
-            "extensometer strain",
-            "strain 1",
-            "strain 2",
-            "video strain",
-            "extensometer",
-            "tensile strain (strain 1)",
-            "tensile strain (strain 2)",
-            "compressive strain (strain 1)",
-            "strain (extensometer)",
-            "tensile strain (extensometer)",
-        ),
-    ),
-    "nominal_stress_Pa": (
-        "Pa",
-        (
-            "engineering stress",
-            "nominal stress",
-            "compressive stress",
-            "tensile stress",
-            "stress",
-            "spannung",
-        ),
-    ),
-    "shear_rate_per_s": ("1/s", ("shear rate", "scherrate")),
-    "shear_stress_Pa": ("Pa", ("shear stress", "schubspannung")),
-    "viscosity_Pas": ("Pa.s", ("viscosity", "viskosit\u00e4t")),
-    "speed_rpm": ("rpm", ("drehzahl",)),
-    "true_strain": ("1", ("true strain",)),
-    "true_stress_Pa": ("Pa", ("true stress",)),
-}
+STANDARD = _standard()
 
 _MEANING = {
     label: (rank, name)

@@ -104,11 +104,14 @@ class RawFile:
     path : relative to `raw/`, for messages and origins
     data : the bytes as they are on disk
     ends_open : the campaign declares that this exporter writes no final line end
+    technique : in whose register it is listed, empty where nobody says: plain tables are asked for
+        the quantities of that technique
     """
 
     path: str
     data: bytes
     ends_open: bool = False
+    technique: str = ""
 
     @cached_property
     def sha256(self) -> str:

@@ -102,7 +102,7 @@ def source_of(specimen: Specimen) -> str:
 
 
 def _read(task: Task, path: str) -> Recording:
-    file = RawFile(path, read_raw(task.raw, path), task.ends_open)
+    file = RawFile(path, read_raw(task.raw, path), task.ends_open, task.specimen.technique)
     if file.sha256 != task.sha256:
         raise RawFileError(path, "the file changed while it was being read", hint="run again")
     recording = _format(task.specimen, file).read(file)

@@ -28,9 +28,15 @@ def test_a_number_with_its_unit(text: str, unit: str, value: float) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("500", "--t-de is '500': a bare number is ambiguous; give it with its unit (cm, in, m, "),
-        ("500MPa", "--t-de is '500MPa': MPa does not fit; give it in cm, in, m, mm, nm, um"),
-        ("um", "--t-de is 'um'; give a number with its unit (cm, in, m, mm, nm, um)"),
+        (
+            "500",
+            "--t-de is '500': a bare number is ambiguous; give it with its unit (cm, in, inch, m, ",
+        ),
+        (
+            "500MPa",
+            "--t-de is '500MPa': MPa does not fit; give it in cm, in, inch, m, mil, mm, nm, um",
+        ),
+        ("um", "--t-de is 'um'; give a number with its unit (cm, in, inch, m, mil, mm, nm, um)"),
         ("", "--t-de is ''; give a number with its unit"),
         ("5,5um", "--t-de is '5,5um'"),
     ],

@@ -14,7 +14,8 @@ _TO_PINT = {
     "V_per_um": "V/um", "kV_per_mm": "kV/mm", "V_per_s": "V/s", "kV_per_s": "kV/s",
     "Pas": "Pa*s", "mPas": "mPa*s", "Pa.s": "Pa*s", "mPa.s": "mPa*s", "C": "degC", "sec": "s",
     "N.m": "N*m", "Nm": "N*m", "mN.m": "mN*m", "uN.m": "uN*m", "mNm": "mN*m", "uNm": "uN*m", "Pa s": "Pa*s",
-    "1/min": "rpm",
+    "1/min": "rpm", "m/m": "dimensionless", "in/in": "dimensionless", "mil": "thou", "mPa s": "mPa*s", "s-1": "1/s",
+    "N/m2": "N/m**2", "N/cm2": "N/cm**2", "kgf/cm2": "kgf/cm**2", "dyn/cm2": "dyn/cm**2", "g/cm3": "g/cm**3",
 }  # fmt: skip
 
 

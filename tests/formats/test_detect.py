@@ -10,13 +10,14 @@ import pytest
 
 from deamat import formats
 from deamat.core.errors import ConfigError, RawFileError
-from deamat.formats import FORMATS, detect
+from deamat.formats import FORMATS, detect, plain
 from deamat.formats.format import Format
 from deamat.formats.rawfile import Head, RawFile
 from tests.formats.samples import BY_NAME, SAMPLES, Sample
 from tests.formats.test_good_files import every_sample
 
-NAMES = ", ".join(form.name for form in FORMATS)
+EVERY = (*FORMATS, plain.FORMAT)
+NAMES = ", ".join(form.name for form in EVERY)
 
 
 def refused(data: bytes) -> str:
@@ -47,9 +48,10 @@ def test_every_format_has_a_sample_or_tests_of_its_own() -> None:
 
 def test_an_unknown_file_is_described() -> None:
     assert refused(b"a;b;c\n1;2;3\n4;5;6\n") == (
-        f"x, line 1: no format recognises this file; there are {NAMES} (utf-8, probably "
-        "semicolon-separated with 3 columns) (found 'a;b;c'); name the format in the register's "
-        "`format` column, or export in one of these forms"
+        "x, line 1: no format recognises this file: no table with labels and units (utf-8, "
+        "probably semicolon-separated with 3 columns) (found 'a;b;c'); export a table with a row "
+        "of labels and the unit of each column, such as `Load (N)`, or name the format in the "
+        "register's `format` column"
     )
 
 
@@ -76,8 +78,7 @@ def test_two_formats_that_match_are_an_error(monkeypatch: pytest.MonkeyPatch) ->
         "Wavelength (nm)\tAbsorbance\n400\t0.1\n",  # a spectrometer's
         "2theta;counts\n10.0;512\n",  # a diffractometer's
         "date,room,celsius\n2022-03-01,lab,21.5\n",  # a thermometer's
-        "Depth (nm)\tLoad (uN)\tTime (s)\n-1.5\t0.2\t0.1\n",  # an indenter's
-        "Point;Shear Rate (1/s);Viscosity (mPa.s)\n1;0.1;500\n",  # a rheometer's
+        "Step;Torque (mN.m);Angle (rad)\n1;0.1;500\n",  # a rheometer's
         "time_s,ch1_C,ch2_C\n0.0,0.1,0.2\n",  # a logger's
     ],
 )
@@ -86,7 +87,7 @@ def test_other_instruments_are_ignored(text: str) -> None:
 
 
 def test_a_format_can_be_named() -> None:
-    assert [detect.by_name(form.name) for form in FORMATS] == list(FORMATS)
+    assert [detect.by_name(form.name) for form in EVERY] == list(EVERY)
 
 
 def test_an_unknown_name_is_refused_with_the_nearest() -> None:
@@ -97,7 +98,7 @@ def test_an_unknown_name_is_refused_with_the_nearest() -> None:
     )
 
 
-@pytest.mark.parametrize("form", FORMATS, ids=lambda form: form.name)
+@pytest.mark.parametrize("form", EVERY, ids=lambda form: form.name)
 def test_every_reader_documents_itself_under_the_same_headings(form: Format) -> None:
     module = importlib.import_module(f"deamat.formats.{form.name}")
     assert module.FORMAT is form
@@ -113,7 +114,7 @@ def test_the_list_holds_every_reader_there_is() -> None:
         for path in folder.glob("*.py")
         if re.search(r"^FORMAT = Format\(", path.read_text(), re.MULTILINE)
     }
-    assert readers == {form.name for form in FORMATS}
+    assert readers == {form.name for form in EVERY}
 
 
 def test_the_head_is_short_and_knows_no_line_ends() -> None:

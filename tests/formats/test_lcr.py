@@ -219,12 +219,10 @@ def test_what_is_not_certain_is_refused_by_name(data: bytes, message: str) -> No
     assert refused(data).startswith(message)
 
 
-def test_units_in_brackets_may_be_a_testing_machines_and_need_the_register_to_decide() -> None:
+def test_units_in_brackets_below_the_labels_of_a_sweep_are_no_testing_machines() -> None:
     text = "frequency,Cp,D\n(Hz),(pF),(-)\n10,158.21,0.001\n"
-    assert refused(text).startswith(
-        "x, line 1: several formats recognise this file: bluehill, lcr_csv"
-    )
-    named = by_name("lcr_csv").read(RawFile("x", text.encode()))
+    file = RawFile("x", text.encode())
+    named = detect(file).read(file)
     assert named.columns["parallel_capacitance_F"][0] == pytest.approx(158.21e-12)
 
 
@@ -241,7 +239,6 @@ def test_a_register_may_not_send_another_file_to_the_e4980a_reader() -> None:
         "gamry_dta_traps/eispot_data.dta",
         "havnegpy_novocontrol/test_data.TXT",
         "impedancepy_exports/exampleData.csv",
-        "impedancepy_exports/exampleDataGamry.DTA",
         "impedancepy_exports/exampleDataParstat.txt",
         "impedancepy_exports/exampleDataPowersuite.txt",
         "impedancepy_exports/exampleDataZPlot.z",
@@ -251,8 +248,21 @@ def test_exports_of_impedance_spectrometers_are_refused_and_not_misread(
     shared: Path, file: str
 ) -> None:
     data = (shared / "real" / "dielectric" / file).read_bytes()
-    with pytest.raises(RawFileError, match=r"no format recognises this file; there are .*lcr6000"):
-        detect(RawFile(file, data))
+    found = RawFile(file, data, technique="permittivity")
+    with pytest.raises(
+        RawFileError, match=r"no format recognises this file: |too few fields|must be above zero"
+    ):
+        detect(found).read(found)
+
+
+def test_the_sweep_of_a_real_potentiostat_is_read(shared: Path) -> None:
+    file = "real/dielectric/impedancepy_exports/exampleDataGamry.DTA"
+    raw = RawFile(file, (shared / file).read_bytes(), technique="permittivity")
+    recording = detect(raw).read(raw)
+    assert (recording.source.reader, recording.source.first_line) == ("plain", 449)
+    first = [values[0] for values in recording.columns.values()]
+    assert first == [200015.6, 825.8584, -1367.239]  # Hz, ohm, ohm
+    assert len(recording.columns["frequency_Hz"]) == 72
 
 
 def test_the_quoted_replies_of_a_real_meter_are_known_and_their_function_refused(

@@ -104,9 +104,9 @@ def test_an_unknown_unit_is_refused_by_name() -> None:
 
 
 def test_a_column_without_a_unit_is_refused() -> None:
-    assert refused("Time (s),Load (N),Grip", "0,1,2") == (
+    assert refused("Time (s),Load (N),Stroke", "0,1,2") == (
         "x.csv, line 1, column 3: a column without a unit, neither over the column nor in the "
-        "header (found 'Grip'); export the column with its unit, or leave it out"
+        "header (found 'Stroke'); export the column with its unit, or leave it out"
     )
 
 

@@ -1,0 +1,61 @@
+"""Which decimal mark the cells of a table use, and their numbers under it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+from deamat.core.number_grammar import is_number
+
+_GROUPS_BY_COMMA = re.compile(r"[+-]?[1-9][0-9]{0,2}(?:,[0-9]{3})+(?:\.[0-9]*)?")
+_GROUPS_BY_POINT = re.compile(r"[+-]?[1-9][0-9]{0,2}(?:\.[0-9]{3})+,[0-9]*")
+_GROUPS_BY_SPACE = re.compile(r"[+-]?[0-9]{1,3}(?:[\u00a0\u202f' ][0-9]{3})+(?:[.,][0-9]*)?")
+_SPACES = re.compile(r"[\u00a0\u202f' ]")
+
+
+class Ambiguous(ValueError):
+    """Both decimal marks fit, and mean different numbers; holds the cell that shows it."""
+
+
+def normal(cell: str) -> str:
+    """Write a true minus sign as a hyphen, and leave out blanks between groups of thousands."""
+    plain = cell.replace("\u2212", "-")
+    return _SPACES.sub("", plain) if _GROUPS_BY_SPACE.fullmatch(plain) else plain
+
+
+def _has_comma(cell: str) -> bool:
+    """Say whether a cell is a number with a decimal comma."""
+    return "," in cell and "." not in cell and is_number(cell.replace(",", ".", 1))
+
+
+def decimal_mark(cells: Iterable[str]) -> str:
+    """Return the decimal mark under which all cells that are numbers at all are numbers.
+
+    Raises
+    ------
+    Ambiguous : every cell with a comma may be a fraction or thousands
+    """
+    point = comma = True
+    doubtful = ""
+    for cell in cells:
+        if "," not in cell and "." not in cell:
+            continue
+        as_point = is_number(cell) or bool(_GROUPS_BY_COMMA.fullmatch(cell))
+        as_comma = _has_comma(cell) or bool(_GROUPS_BY_POINT.fullmatch(cell))
+        if not (as_point or as_comma):
+            continue
+        if as_point and as_comma and not doubtful:
+            doubtful = cell
+        point, comma = point and as_point, comma and as_comma
+    if point and comma and doubtful:
+        raise Ambiguous(doubtful)
+    return "," if comma and not point else "."
+
+
+def number_text(cell: str, decimal: str) -> str:
+    """Return a cell as a number with a decimal point, or as it is where it is none."""
+    if decimal == ",":
+        if _GROUPS_BY_POINT.fullmatch(cell):
+            cell = cell.replace(".", "")
+        return cell.replace(",", ".", 1) if _has_comma(cell) else cell
+    return cell.replace(",", "") if _GROUPS_BY_COMMA.fullmatch(cell) else cell
