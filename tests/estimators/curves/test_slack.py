@@ -1,0 +1,64 @@
+"""Promises about slack: found where a curve has a hinge, with an honest width, and nowhere else."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from deamat.core.arrays import FloatArray
+from deamat.estimators.curves.slack import find_slack
+
+E = 100e3
+STRAIN = np.linspace(0.0, 0.6, 601)
+WINDOW = 0.1
+
+
+def hinge(place: float, loose: float = 0.0, strain: FloatArray = STRAIN) -> FloatArray:
+    """A curve whose start has a fraction of the slope behind the hinge."""
+    return E * (loose * strain + (1.0 - loose) * np.maximum(strain - place, 0.0))
+
+
+@pytest.mark.parametrize("place", [0.007, 0.03, 0.15, 0.25])
+@pytest.mark.parametrize("strain", [STRAIN, np.linspace(0.0, 0.6, 241)])
+def test_a_hinge_is_found_within_its_stated_width(place: float, strain: FloatArray) -> None:
+    found = find_slack(strain, hinge(place, 0.1, strain), WINDOW)
+    assert found is not None
+    assert abs(found.strain - place) < 1.75 * found.u_strain < 0.1 * WINDOW
+    assert found.slope_after_Pa == pytest.approx(E, rel=5e-3)
+    assert found.slope_before_Pa == pytest.approx(0.1 * E, abs=0.2 * E)
+
+
+def test_both_slopes_are_exact_where_the_hinge_lies_on_the_grid() -> None:
+    found = find_slack(STRAIN, hinge(0.15, 0.3), WINDOW)
+    assert found is not None
+    assert found.strain == pytest.approx(0.15)
+    assert (found.slope_before_Pa, found.slope_after_Pa) == pytest.approx((0.3 * E, E))
+
+
+@pytest.mark.parametrize(("loose", "slack"), [(0.78, True), (0.85, False), (1.0, False)])
+def test_a_start_less_steep_by_a_fifth_is_slack(loose: float, slack: bool) -> None:
+    assert (find_slack(STRAIN, hinge(0.03, loose), WINDOW) is not None) == slack
+
+
+def test_a_falling_or_softening_curve_has_no_slack() -> None:
+    assert find_slack(STRAIN, -hinge(0.15), WINDOW) is None
+    assert find_slack(STRAIN, hinge(0.15, 2.0), WINDOW) is None
+    assert find_slack(STRAIN[:7], hinge(0.003)[:7], WINDOW) is None
+
+
+def test_the_width_is_the_scatter_that_noise_brings() -> None:
+    rng = np.random.default_rng(9)
+    errors, widths = [], []
+    for _ in range(150):
+        found = find_slack(STRAIN, hinge(0.053) + rng.normal(0.0, 1e3, STRAIN.size), WINDOW)
+        assert found is not None
+        errors.append(found.strain - 0.053)
+        widths.append(found.u_strain)
+    assert 0.6 < np.std(errors) / np.mean(widths) < 1.4
+    assert abs(np.mean(errors)) < 0.3 * np.mean(widths)
+
+
+def test_noise_on_a_straight_line_is_no_slack() -> None:
+    rng = np.random.default_rng(10)
+    noisy = (E * STRAIN + rng.normal(0.0, 5e3, STRAIN.size) for _ in range(300))
+    assert sum(find_slack(STRAIN, stress, WINDOW) is not None for stress in noisy) <= 1
