@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import multiprocessing
 import os
 import signal
@@ -80,6 +81,20 @@ def test_a_lock_is_not_inherited_and_holds_against_others(tmp_path: Path) -> Non
         assert _try(tmp_path / "lock") == 0
 
 
+def test_a_file_system_without_locks_is_told_as_such(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def lockf(*_: int) -> None:
+        raise OSError(errno.ENOLCK, "No locks available")
+
+    stub = types.SimpleNamespace(LOCK_EX=2, LOCK_NB=4, lockf=lockf)
+    with monkeypatch.context() as patch:
+        patch.setitem(sys.modules, "fcntl", stub)
+        with pytest.raises(OSError, match="No locks available"):
+            Lock(tmp_path / "lock")
+    Lock(tmp_path / "lock").release()
+
+
 def test_without_fcntl_the_lock_is_that_of_windows(
     folders: Folders, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -105,7 +120,8 @@ def test_the_cpus_are_counted_with_what_the_platform_has(monkeypatch: pytest.Mon
     monkeypatch.setattr(os, "process_cpu_count", lambda: 7, raising=False)
     assert cpu_count() == 7
     monkeypatch.delattr(os, "process_cpu_count")
-    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 3, 4}, raising=False)
+    mine = {0: {0, 3, 4}, 1: {0}}  # of this process, and of the first of the system
+    monkeypatch.setattr(os, "sched_getaffinity", mine.__getitem__, raising=False)
     assert cpu_count() == 3
     monkeypatch.delattr(os, "sched_getaffinity")
     monkeypatch.setattr(os, "cpu_count", lambda: 5)
