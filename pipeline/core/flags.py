@@ -26,7 +26,7 @@ _WARNING = (
     "approximate-interval", "clean-again", "coarse-rounding", "coarse-sampling", "contradicting",
     "cross-validation", "curved", "deep-indentation", "displacement-zeroed", "end-unsure",
     "extensometer", "falls", "few-failures", "few-independent-samples", "grips",
-    "header-disagrees", "identical-rows", "label-by-unit", "law-ends", "low-outlier",
+    "header-disagrees", "hidden-rows", "identical-rows", "label-by-unit", "law-ends", "low-outlier",
     "method-changed",
     "missing-rows", "not-in-every-reading", "not-one-viscosity", "not-positive", "outlier",
     "outlying-readings", "outside-torque-window", "over-range", "poor-fit", "preload",

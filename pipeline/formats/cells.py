@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -152,7 +153,7 @@ def _split(
     if len(fields) == columns and (dialect.quoted or not stray):
         return fields
     if not any(looks_numeric(field) for field in fields):
-        raise text_row(file, line, at)
+        raise text_row(file.path, line, at, file.head[: at - 1])
     if stray and not dialect.quoted:
         raise RawFileError(
             file.path,
@@ -209,7 +210,7 @@ def _refusal(
     """Say why a field is not a number."""
     found = why_not(fields[column], dialect)
     if found is None and not any(looks_numeric(field) for field in fields):
-        return text_row(file, line, at)
+        return text_row(file.path, line, at, file.head[: at - 1])
     reason, hint = found or _NOT_A_NUMBER
     return RawFileError(
         file.path, reason, line=at, column=column + 1, value=fields[column], hint=hint
@@ -244,11 +245,11 @@ def why_not(field: str, dialect: Dialect) -> tuple[str, str] | None:
     return None
 
 
-def text_row(file: RawFile, line: str, at: int) -> RawFileError:
+def text_row(path: str, line: str, at: int, above: Iterable[str]) -> RawFileError:
     """Refuse a row of text between the rows, perhaps the header once more."""
-    header = line.strip() in (known.strip() for known in file.head[: at - 1])
+    header = line.strip() in (known.strip() for known in above)
     return RawFileError(
-        file.path,
+        path,
         "the header is repeated between the rows" if header else "a text row between the rows",
         line=at,
         value=line.strip(),

@@ -9,7 +9,7 @@ import difflib
 from collections import Counter
 
 from deamat.core.errors import ConfigError, RawFileError
-from deamat.formats import FORMATS, plain
+from deamat.formats import FORMATS, plain, workbook
 from deamat.formats.format import Format
 from deamat.formats.rawfile import Head, RawFile
 
@@ -21,7 +21,7 @@ _AS_TEXT = "export the data as text (CSV) and register that file"
 # how files start that are no text, and what to do with them
 _BINARY = {
     b"\xd0\xcf\x11\xe0": ("an Excel workbook of the old form (.xls)", "save it as .xlsx or CSV"),
-    b"PK\x03\x04": ("an archive, perhaps an Excel workbook", "save the sheet as CSV"),
+    b"PK\x03\x04": ("an archive that is no whole Excel workbook", "save the sheet as CSV"),
     b"TDSm": ("a LabVIEW measurement in binary form (.tdms)", _AS_TEXT),
     b"\x89HDF": ("an HDF5 file", _AS_TEXT),
     b"%PDF": ("a PDF document", _AS_TEXT),
@@ -38,6 +38,8 @@ def detect(file: RawFile) -> Format:
     RawFileError : none does, or several do; says what was found, and what is missing of the
         nearest table
     """
+    if workbook.is_workbook(file.data):
+        return workbook.FORMAT
     _refuse_binary(file)
     matching = file.once(_recognising)
     if len(matching) == 1:
@@ -99,10 +101,10 @@ def by_name(name: str) -> Format:
     ------
     ConfigError : there is no such format; names the nearest one
     """
-    for form in (*FORMATS, plain.FORMAT):
+    for form in (*FORMATS, plain.FORMAT, workbook.FORMAT):
         if form.name == name:
             return form
-    names = [form.name for form in (*FORMATS, plain.FORMAT)]
+    names = [form.name for form in (*FORMATS, plain.FORMAT, workbook.FORMAT)]
     near = difflib.get_close_matches(name, names, n=1)
     hint = f"; did you mean {near[0]}?" if near else ""
     raise ConfigError(f"there is no format {name!r}; there are {', '.join(names)}{hint}")

@@ -70,20 +70,31 @@ def understood(file: RawFile) -> tuple[Text, Choice]:
     nearest: Choice | None = None
     complete: list[tuple[Text, Choice]] = []
     for text in texts(file):
-        choices = [
-            choose(heading, technique)
-            for technique in ([file.technique] if file.technique in ASKED else ASKED)
-            for heading in headings(text.lines)
-        ]
-        found = [choice for choice in choices if not choice.faults]
-        if found:
-            complete.append((text, _one_table(file, text, found)))
-        for choice in choices:
-            if nearest is None or choice.labelled > nearest.labelled:
-                nearest = choice
+        choice, near = complete_in(file, text)
+        if choice is not None:
+            complete.append((text, choice))
+        if near is not None and (nearest is None or near.labelled > nearest.labelled):
+            nearest = near
     if complete:
         return max(complete, key=lambda pair: (pair[1].by_label, pair[1].labelled))
-    raise _refused(file, nearest)
+    raise refused(file, nearest)
+
+
+def complete_in(file: RawFile, text: Text) -> tuple[Choice | None, Choice | None]:
+    """Return the table of a text that has what is needed, and the nearest one of all.
+
+    Raises
+    ------
+    RawFileError : there are several, or two separators fit
+    """
+    choices = [
+        choose(heading, technique)
+        for technique in ([file.technique] if file.technique in ASKED else ASKED)
+        for heading in headings(text.lines)
+    ]
+    found = [choice for choice in choices if not choice.faults]
+    nearest = max(choices, key=lambda choice: choice.labelled, default=None)
+    return (_one_table(file, text, found) if found else None), nearest
 
 
 def texts(file: RawFile) -> list[Text]:
@@ -152,7 +163,8 @@ def _refuse_rows_above(file: RawFile, text: Text, heading: Heading) -> None:
             )  # fmt: skip
 
 
-def _refused(file: RawFile, nearest: Choice | None) -> RawFileError:
+def refused(file: RawFile, nearest: Choice | None) -> RawFileError:
+    """Say what is missing of the nearest table."""
     if nearest is None or not nearest.labelled:
         return RawFileError(file.path, "no table with labels and units")
     heading = nearest.heading

@@ -45,7 +45,7 @@ def recording_of(
             file.path, "no data rows: the file ends with its header", len(lines) - (not lines[-1]),
             hint="export the file again",
         )  # fmt: skip
-    values, dropped = _values(file, lines[first:last], choice)
+    values, dropped = _values(file, lines[:last], choice)
     if not ended:
         raise RawFileError(
             file.path, "no line end after the last row, so its last number may be cut", last,
@@ -86,14 +86,15 @@ def _insist_on_frequencies(file: RawFile, columns: dict[str, FloatArray], choice
 
 
 def _values(
-    file: RawFile, rows: Sequence[str], choice: Choice
+    file: RawFile, lines: Sequence[str], choice: Choice
 ) -> tuple[dict[str, FloatArray], dict[str, str]]:
     """Read the columns that are used; of those that may be dropped, say why they were."""
     used = [*choice.needed, *choice.further]
+    rows = lines[choice.heading.first :]
     fast = _fast(rows, choice)
     if fast is not None:
         return {taken.name: fast[:, taken.column] for taken in used}, {}
-    split = _split(file, rows, choice)
+    split = _split(file, rows, choice, lines[: choice.heading.first])
     cells = {t.name: [normal(row[t.column]) for row in split] for t in used}
     try:
         decimal = decimal_mark(cell for t in choice.needed for cell in cells[t.name])
@@ -132,7 +133,9 @@ def _fast(rows: Sequence[str], choice: Choice) -> FloatArray | None:
     return parse(block.encode(), width, Dialect(separator))
 
 
-def _split(file: RawFile, rows: Sequence[str], choice: Choice) -> list[list[str]]:
+def _split(
+    file: RawFile, rows: Sequence[str], choice: Choice, above: Sequence[str]
+) -> list[list[str]]:
     """Split rows into fields, insisting on one length."""
     width = 0
     split: list[list[str]] = []
@@ -146,7 +149,7 @@ def _split(file: RawFile, rows: Sequence[str], choice: Choice) -> list[list[str]
         width = width or len(cells)
         if len(cells) != width:
             if not any(map(looks_numeric, cells)):
-                raise text_row(file, row, at)
+                raise text_row(file.path, row, at, above)
             few = len(cells) < width
             last = "; the file seems cut" if few and at == choice.heading.first + len(rows) else ""
             raise RawFileError(
@@ -157,7 +160,7 @@ def _split(file: RawFile, rows: Sequence[str], choice: Choice) -> list[list[str]
         if not any(looks_numeric(cells[taken.column]) for taken in choice.needed) and not any(
             map(looks_numeric, cells)
         ):
-            raise text_row(file, row, at)
+            raise text_row(file.path, row, at, above)
         split.append(cells)
     return split
 
