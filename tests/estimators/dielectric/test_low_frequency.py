@@ -23,6 +23,19 @@ def test_height_and_exponent_come_back(height: float, s: float) -> None:
     assert found.at(100.0) == pytest.approx(height * 10.0**-s, rel=0.03)
 
 
+def test_what_lies_below_the_value_or_far_above_it_plays_no_part() -> None:
+    f = np.concatenate([[1.0, 3.0], F, [3e5, 1e6]])
+    rise = 0.4 * (f / 10) ** -1.2
+    capacitance, loss = 1e-10 * (1 + rise), 0.004 + 0.3 * rise
+    capacitance[:2] *= 0.9
+    capacitance[-2:] *= 1.3  # another mechanism
+    alone = polarisation(F, capacitance[2:-2], loss[2:-2], 10.0)
+    found = polarisation(f, capacitance, loss, 10.0)
+    assert alone is not None
+    assert found is not None
+    assert (found.height, found.exponent) == pytest.approx((alone.height, alone.exponent))
+
+
 def test_a_rise_without_loss_or_a_film_that_depends_on_ln_f_is_none() -> None:
     rise = 0.4 * (F / 10) ** -1.2
     assert polarisation(F, FILM * (1 + rise), LOSS, 10.0) is None
