@@ -51,7 +51,8 @@ def test_the_exponent_is_that_of_greatest_likelihood() -> None:
     assert best > max(log_likelihood(found.exponent + d) for d in (-1e-3, 1e-3))
     ends = [log_likelihood(found.low), log_likelihood(found.high)]
     assert ends[0] == pytest.approx(ends[1], abs=1e-3)
-    assert best - ends[0] > 1.92
+    # where the exact interval of a normal regression ends: Student's t of 20 failures less 3
+    assert best - ends[0] == pytest.approx(0.5 * 20 * np.log1p(2.109816**2 / 17), rel=1e-3)
 
 
 def test_too_few_specimens_are_refused() -> None:

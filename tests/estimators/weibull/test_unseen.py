@@ -40,7 +40,15 @@ def test_more_specimens_see_more() -> None:
     found = [unseen(simulated(n, 1, seed=74)[0][0], None, 0.01) for n in (10, 50, 500)]
     assert found[0].power_lower < 0.8
     assert found[1].lower > found[2].lower > 0.0
+    assert found[1].higher > found[2].higher > 0.0
+    assert 0.1 < found[0].power_higher < found[0].power_lower < 0.8
+    assert found[1].power_lower == found[1].power_higher == 0.8
     assert [round(f.weak_fraction, 4) for f in found] == [0.2589, 0.0582, 0.0060]
+
+
+def test_what_is_seen_of_many_specimens_is_less_by_the_root_of_their_number() -> None:
+    some, many = (_departure((0,) * n, 1, 0.8, 0.05, 0.005)[0] for n in (400, 1600))
+    assert many == pytest.approx(0.5 * some, rel=0.05)
 
 
 def test_neither_unit_nor_order_matters() -> None:
