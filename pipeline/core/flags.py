@@ -29,11 +29,12 @@ _WARNING = (
     "header-disagrees", "hidden-rows", "identical-rows", "label-by-unit", "law-ends", "low-outlier",
     "method-changed",
     "missing-rows", "not-in-every-reading", "not-one-viscosity", "not-positive", "outlier",
-    "outlying-readings", "outside-torque-window", "over-range", "poor-fit", "preload",
-    "rate-of-rise", "register-outlier", "runs-differ", "series-resistance", "setting-changed",
-    "settings-disagree", "several-loadings", "slack", "specimens-refused", "squeezed-film",
-    "stopped-early", "tested-on-disagrees", "time-not-increasing", "tip-not-rigid", "toe",
-    "trailing-zeros", "unit-of-another-kind", "unregistered", "voltage-noise", "wide-interval",
+    "outlying-readings", "outside-torque-window", "over-range", "plate-friction", "poor-fit",
+    "preload", "rate-of-rise", "register-outlier", "runs-differ", "series-resistance",
+    "setting-changed", "settings-disagree", "several-loadings", "slack", "specimens-refused",
+    "squeezed-film", "stopped-early", "tested-on-disagrees", "time-not-increasing",
+    "tip-not-rigid", "toe", "trailing-zeros", "unit-of-another-kind", "unregistered",
+    "voltage-noise", "wide-interval",
 )  # fmt: skip
 _INFO = (
     "columns-not-used", "counted-both-ways", "edge-field", "electrode-aspect", "extrapolated",

@@ -132,6 +132,12 @@ class Machine(Declared):
     torque_noise: float = Field(
         default=0.003, gt=0, description="viscometer, fraction of full scale, of a single reading"
     )
+    compliance_m_per_N: float | None = Field(
+        default=None,
+        ge=0,
+        description="of frame, load cell and grips: travel for a force without a specimen",
+    )
+    u_compliance_m_per_N: float = Field(default=0.0, ge=0, description="standard, shared")
     max_travel_m: float | None = Field(
         default=None, gt=0, description="reading at which the displacement ends, where it matters"
     )

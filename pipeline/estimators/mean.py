@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from statistics import median
 
 import numpy as np
 from scipy.special import stdtrit
@@ -141,3 +142,32 @@ def outliers(values: Sequence[float], significance: float = 0.01) -> tuple[int, 
     limit = (n - 1) / math.sqrt(n) * math.sqrt(t * t / (n - 2 + t * t))
     worst = int(distance.argmax())
     return (worst,) if distance[worst] > limit * sd else ()
+
+
+_FAR, _FAR_SDS = 1.75, 10.0
+_LEAST_SD = 0.05  # of the median: two values may lie close together by chance
+
+
+def apart_of_few(values: Sequence[float]) -> tuple[int, ...]:
+    """Name a value that stands apart from the two or three others, where Grubbs' test sees nothing.
+
+    It is at least 1.75 times their median, or that many times smaller, and ten of their robust
+    standard deviations away, which count as no less than 5 % of the median.
+
+    Parameters
+    ----------
+    values : shape (n,), of a positive quantity; nothing is named of other counts than 3 and 4
+
+    Returns
+    -------
+    position in `values`, or nothing
+    """
+    if len(values) not in (3, 4) or min(values) <= 0.0:
+        return ()
+    for i, value in enumerate(values):
+        others = [*values[:i], *values[i + 1 :]]
+        middle = median(others)
+        sd = max(1.4826 * median(abs(v - middle) for v in others), _LEAST_SD * middle)
+        if abs(value - middle) > _FAR_SDS * sd and not 1.0 / _FAR < value / middle < _FAR:
+            return (i,)
+    return ()

@@ -10,6 +10,7 @@ import pytest
 
 from deamat.core.errors import FitRefused
 from deamat.estimators.mean import (
+    apart_of_few,
     coverage_factor,
     mean_with_shared,
     outliers,
@@ -95,6 +96,17 @@ def test_outliers_are_named_from_five_values_on() -> None:
     assert outliers([10.0, 10.2, 9.9, 10.1, 20.0]) == (4,)
     assert outliers([10.0, 10.2, 9.9, 10.1, 10.3]) == ()
     assert outliers([10.0, 10.2, 9.9, 20.0]) == ()
+
+
+def test_one_of_few_stands_apart_where_it_is_another_number_altogether() -> None:
+    assert apart_of_few([10.0, 10.3, 41.0]) == (2,)
+    assert apart_of_few([2.4, 10.0, 10.3, 9.9]) == (0,)
+    assert apart_of_few([10.0, 10.01, 14.0]) == ()
+    assert apart_of_few([10.0, 20.0, 40.0]) == ()
+    assert apart_of_few([10.0, 41.0]) == ()
+    rng = np.random.default_rng(5)
+    samples = rng.normal(1.0, 0.15, (4000, 3))
+    assert sum(bool(apart_of_few(sample.tolist())) for sample in samples) < 20
 
 
 def test_outliers_agree_with_the_published_table() -> None:

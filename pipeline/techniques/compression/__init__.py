@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from deamat.core.register import RegisterForm
 from deamat.core.technique import Technique
 from deamat.techniques.compression.config import YIELDS, CompressionConfig
 from deamat.techniques.compression.figure import figure
@@ -18,4 +19,5 @@ TECHNIQUE = Technique(
     reduce=reduce,
     summarise=summarise,
     figure=figure,
+    register=RegisterForm(notes=("plates",)),
 )

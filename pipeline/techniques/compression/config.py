@@ -37,3 +37,7 @@ class CompressionConfig(CurveConfig):
         gt=0,
         description="stress of the line at zero strain, as a fraction of its rise, that is flagged",
     )
+    correct_bonded_plates: bool = Field(
+        default=False,
+        description="divide moduli of cylinders whose plates are declared bonded by 1 + 2 S^2",
+    )

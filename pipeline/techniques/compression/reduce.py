@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
@@ -30,6 +30,7 @@ from deamat.estimators.curves.stress_strain import (
     zero_of_tangent,
 )
 from deamat.techniques.compression.config import COMPENSATED, MODULUS, YIELDS, CompressionConfig
+from deamat.techniques.compression.plates import BONDED, Plates, plates_of
 from deamat.techniques.shared.geometry import circular_section, register_length
 from deamat.techniques.shared.modulus import (
     LoadingCurve,
@@ -41,7 +42,12 @@ from deamat.techniques.shared.modulus import (
     rising_line,
 )
 from deamat.techniques.shared.outcome import nothing_measured, recorded, refusal
-from deamat.techniques.shared.stress_strain import StressStrain, disagreement, stress_strain
+from deamat.techniques.shared.stress_strain import (
+    IndexArray,
+    StressStrain,
+    disagreement,
+    stress_strain,
+)
 
 
 def reduce(
@@ -64,7 +70,10 @@ def reduce(
         file = recorded(recording)
         height = register_length(specimen.numbers, "height_m")
         section = circular_section(specimen.numbers)
-        curve = stress_strain(file, section, height, "height", context.machine)
+        curve = stress_strain(
+            file, section, height, "height", context.machine, config.own_stress_refused
+        )
+        plates = plates_of(specimen.numbers, specimen.notes)
     except FitRefused as error:
         return nothing_measured(specimen, YIELDS, error, recording)
     branch = loading_branch(curve.nominal_strain)
@@ -75,6 +84,8 @@ def reduce(
         file,
         conditions_of_test(specimen, config.window, height),
         flags_of_loading(file, curve, branch),
+        plates,
+        plates.declared == BONDED and config.correct_bonded_plates,
     )
     values: list[MeasuredValue] = []
     refusals: list[Refusal] = []
@@ -86,7 +97,7 @@ def reduce(
         refusals += [refusal(specimen, k, error, loading.conditions) for k in YIELDS]
     else:
         try:
-            values.append(_compensated(loading, bins, config))
+            values.append(_compensated(loading, bins, config, plain.flags))
         except FitRefused as error:
             refusals.append(refusal(specimen, COMPENSATED, error, loading.conditions))
     return Measurement(
@@ -108,6 +119,8 @@ class _Loading:
     recording: Recording
     conditions: Mapping[str, Condition]
     flags: tuple[Flag, ...]
+    plates: Plates
+    corrected: bool
 
 
 def _plain(loading: _Loading, config: CompressionConfig) -> tuple[MeasuredValue, Bins, WindowLine]:
@@ -116,24 +129,63 @@ def _plain(loading: _Loading, config: CompressionConfig) -> tuple[MeasuredValue,
     x, y = loading.strain[inside], loading.stress_Pa[inside]
     line = rising_line(x, y, config.min_samples)
     bins = bin_slopes(x, y, low, high, config.toe_bin)
-    value = modulus(
+    value = _modulus(
         MODULUS,
         line,
-        loading.curve,
+        loading,
         inside,
-        loading.recording,
         method=f"OLS slope with intercept over {percent(config.window)} nominal strain",
-        conditions=loading.conditions,
-        flags=loading.flags
-        + disagreement(loading.curve, inside, config.own_columns_tolerance)
+        flags=disagreement(loading.curve, inside, config.own_columns_tolerance)
         + _toe_flags(line, bins, config),
         diagnostics=_bin_diagnostics(bins, config.toe_bin),
     )
     return value, bins, WindowLine(config.window, line.slope, line.intercept)
 
 
-def _compensated(loading: _Loading, bins: Bins, config: CompressionConfig) -> MeasuredValue:
-    """Slope over the same range of strain, counted from where the steepest tangent meets zero."""
+def _modulus(
+    key: str,
+    line: Line,
+    loading: _Loading,
+    inside: IndexArray,
+    *,
+    method: str,
+    flags: tuple[Flag, ...],
+    diagnostics: Mapping[str, Detail],
+    further: tuple[Contribution, ...] = (),
+) -> MeasuredValue:
+    """Wrap a slope, and say what machine and plates do to it."""
+    curve, plates = loading.curve, loading.plates
+    told = "" if loading.corrected else f"; {plates.told}"
+    if curve.compliance_per_Pa is None:
+        told += "; machine compliance not declared"
+    value = modulus(
+        key,
+        line,
+        curve,
+        inside,
+        loading.recording,
+        method=method + told,
+        conditions=loading.conditions,
+        flags=loading.flags + flags + (() if loading.corrected else plates.flags),
+        diagnostics={
+            **diagnostics,
+            "shape_factor": plates.shape_factor,
+            "bonded_plates_factor": plates.bonded_factor,
+        },
+        further=further,
+    )
+    return plates.corrected(value) if loading.corrected else value
+
+
+def _compensated(
+    loading: _Loading, bins: Bins, config: CompressionConfig, flags: tuple[Flag, ...]
+) -> MeasuredValue:
+    """Slope over the same range of strain, counted from where the steepest tangent meets zero.
+
+    Parameters
+    ----------
+    flags : of the plain modulus: what is wrong with the curve is wrong with both
+    """
     low, high = config.window
     zero = zero_of_tangent(bins)
     if zero < -MISSABLE * (high - low):
@@ -153,22 +205,22 @@ def _compensated(loading: _Loading, bins: Bins, config: CompressionConfig) -> Me
     u_zero = bend * config.toe_bin / math.sqrt(12.0)
     # the first load may rest on the specimen, or be that of a cell which nobody zeroed
     u_preload = bend * abs(float(loading.stress_Pa[0])) / line.slope / math.sqrt(3.0)
-    return modulus(
+    value = _modulus(
         COMPENSATED,
         line,
-        loading.curve,
+        loading,
         inside,
-        loading.recording,
         method=f"OLS slope over {percent(config.window)} of nominal strain counted from the zero "
         f"of the tangent to the steepest {100 * config.toe_bin:g} % of the window",
-        conditions=loading.conditions,
-        flags=loading.flags,
+        flags=flags,
         diagnostics={"zero_strain": zero},
         further=(
             Contribution("zero of the toe's tangent", u_zero, shared=False),
             Contribution("load before the test: on the specimen or not", u_preload, shared=True),
         ),
     )
+    once = {flag.name: flag for flag in reversed(value.flags)}
+    return replace(value, flags=tuple(reversed(once.values())))
 
 
 def _toe_flags(line: Line, bins: Bins, config: CompressionConfig) -> tuple[Flag, ...]:

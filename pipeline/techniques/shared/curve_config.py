@@ -36,3 +36,9 @@ class CurveConfig(Declared):
         gt=0,
         description="relative difference at which the file's own stress and strain are flagged",
     )
+    own_stress_refused: float = Field(
+        default=0.2,
+        gt=0,
+        description="relative difference between the file's own stress and force over the "
+        "register's cross-section from which nothing of the file is taken",
+    )

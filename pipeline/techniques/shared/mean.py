@@ -24,7 +24,7 @@ from deamat.core.records import (
     Summary,
 )
 from deamat.estimators.censored_mean import mean_with_limits
-from deamat.estimators.mean import Mean, mean_with_shared, outliers, positive_interval
+from deamat.estimators.mean import Mean, apart_of_few, mean_with_shared, outliers, positive_interval
 
 Pair = tuple[Measurement[Result], MeasuredValue]
 
@@ -193,6 +193,7 @@ def _flags_of_mean(pairs: Sequence[Pair], mean: float) -> tuple[Flag, ...]:
     key = property_key(pairs[0][1].key)
     low, high = key.plausible
     named = [(m.specimen.id, v.quantity.value) for m, v in pairs]
+    found = [value for _, value in named]
     flags = []
     if len(pairs) == 1:
         flags.append(
@@ -202,9 +203,10 @@ def _flags_of_mean(pairs: Sequence[Pair], mean: float) -> tuple[Flag, ...]:
         Flag(
             "outlier",
             f"{named[i][0]} with {named[i][1]:.5g} {key.unit} stands apart from the other "
-            f"{len(pairs) - 1} (Grubbs, 1 %); it is in the mean all the same",
+            f"{len(pairs) - 1}{' (Grubbs, 1 %)' if len(pairs) > 4 else ''}; it is in the mean all "
+            "the same",
         )
-        for i in outliers([value for _, value in named])
+        for i in (outliers(found) or apart_of_few(found))
     ]
     odd = [f"{who} {value:.5g}" for who, value in named if not low <= value <= high]
     if odd or not low <= mean <= high:

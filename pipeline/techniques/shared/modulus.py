@@ -130,6 +130,7 @@ def slope_budget(line: Line, curve: StressStrain) -> tuple[Contribution, ...]:
     own = (
         Contribution("scatter about the line, autocorrelated", scatter, shared=False),
         Contribution("load cell resolution", rounding, shared=False),
+        Contribution("machine compliance", line.slope**2 * curve.u_compliance_per_Pa, shared=True),
     )
     return tuple(c for c in own if c.u > 0.0) + relative_lines(
         line.slope, curve.stress_budget + curve.strain_budget

@@ -19,6 +19,9 @@ from deamat.techniques.shared.geometry import Section, scale_budget
 
 IndexArray = NDArray[np.intp]
 
+_SMALL_STRAIN = 0.05  # up to which the file's own stress is held against force over area
+_FEWEST = 8  # samples for that at least
+
 
 @dataclass(frozen=True, slots=True)
 class StressStrain:
@@ -33,6 +36,8 @@ class StressStrain:
     basis : which columns and whose geometry, in words
     own : the file's own (strain, stress) where they stand beside force and displacement
     extensometer : strain of an extensometer that stands beside the displacement, shape (n,)
+    compliance_per_Pa, u_compliance_per_Pa : strain of the machine for a stress, which was
+        subtracted, and its standard uncertainty; None where no compliance is declared
     first : index of the first sample of the test: the last one before the machine moves
     flags : what was found at the start (an absolute position, grips that closed)
     """
@@ -45,12 +50,19 @@ class StressStrain:
     basis: str
     own: tuple[FloatArray, FloatArray] | None
     extensometer: FloatArray | None = None
+    compliance_per_Pa: float | None = None
+    u_compliance_per_Pa: float = 0.0
     first: int = 0
     flags: tuple[Flag, ...] = ()
 
 
 def stress_strain(
-    recording: Recording, section: Section, length: Quantity, length_name: str, machine: Machine
+    recording: Recording,
+    section: Section,
+    length: Quantity,
+    length_name: str,
+    machine: Machine,
+    own_stress_refused: float = math.inf,
 ) -> StressStrain:
     r"""Reduce a recording to nominal stress and strain, loading positive.
 
@@ -59,18 +71,20 @@ def stress_strain(
     Force and displacement are preferred, with the register's geometry; the file's own columns
     then only serve as a check. A file with nothing but its own columns is used as it is: the
     geometry was its exporter's, and its uncertainty cannot enter. The signs are those of the
-    greatest excursions from the first sample while loading, so exports of either sign agree.
+    greatest excursions from the first sample while loading, so exports of either sign agree. Where
+    the machine's compliance C is declared, $C F$ is subtracted from the displacement.
 
     Parameters
     ----------
     recording : with `force_N` and `displacement_m`, or `nominal_strain` and `nominal_stress_Pa`
     section, length : initial area, and height or gauge length `[m]`
     length_name : what to call the length (`height`)
-    machine : resolution and calibration of load cell and crosshead
+    machine : resolution and calibration of load cell and crosshead, and its compliance
+    own_stress_refused : relative difference to the file's own stress from which nothing is taken
 
     Raises
     ------
-    FitRefused : columns are missing, not finite, or never move
+    FitRefused : columns are missing, not finite, or never move; or the file's own stress is another
     """
     columns = recording.columns
     strain_budget: tuple[Contribution, ...] = (
@@ -80,6 +94,8 @@ def stress_strain(
         Contribution("load cell calibration", machine.u_force_calibration, shared=True),
     )
     own = None
+    compliance: float | None = None
+    u_compliance = 0.0
     if "nominal_strain" in columns and "nominal_stress_Pa" in columns:
         own = (columns["nominal_strain"], columns["nominal_stress_Pa"])
     if "force_N" in columns and "displacement_m" in columns:
@@ -89,8 +105,17 @@ def stress_strain(
         strain_budget += scale_budget(length_name, length)
         stress_budget += section.budget
         basis = f"force over the register's cross-section, displacement over its {length_name}"
+        if "nominal_stress_Pa" in columns:
+            _insist_on_own_stress(strain, stress, columns["nominal_stress_Pa"], own_stress_refused)
         if own is not None:
             own = _loading_positive(*own)
+        if machine.compliance_m_per_N is not None:
+            per_Pa = section.area_m2 / length.value
+            compliance = per_Pa * machine.compliance_m_per_N
+            u_compliance = per_Pa * machine.u_compliance_m_per_N
+            strain = strain - compliance * stress
+            own = None if own is None else (own[0] - compliance * stress, own[1])
+            basis += ", less the machine's compliance"
     elif own is not None:
         strain, stress = _loading_positive(*own)
         own = None
@@ -113,8 +138,32 @@ def stress_strain(
             basis,
             own,
             columns.get("extensometer_strain"),
+            compliance,
+            u_compliance,
         )
     )
+
+
+def _insist_on_own_stress(
+    strain: FloatArray, stress_Pa: FloatArray, own_Pa: FloatArray, tolerance: float
+) -> None:
+    """Refuse a file whose own stress rises otherwise than force over the cross-section.
+
+    Over the first strain, where true and nominal stress hardly differ.
+    """
+    end = max(int(np.searchsorted(np.maximum.accumulate(strain), _SMALL_STRAIN)), _FEWEST)
+    ours, theirs = stress_Pa[:end] - stress_Pa[0], own_Pa[:end] - own_Pa[0]
+    rise = float(ours @ ours)
+    if rise == 0.0:
+        return
+    ratio = abs(float(theirs @ ours)) / rise
+    if ratio > 1.0 + tolerance or ratio < 1.0 / (1.0 + tolerance):
+        raise FitRefused(
+            f"the file's own stress is {ratio:.4g} times force over the register's cross-section: "
+            "the unit of one of the columns, or the register's geometry, is wrong; nothing says "
+            "which (own_stress_refused is the difference from which this is refused)",
+            {"own_stress_over_ours": ratio},
+        )
 
 
 def _from_its_start(curve: StressStrain) -> StressStrain:

@@ -91,7 +91,9 @@ def taut_modulus(
         method=f"OLS slope over {percent(config.window)} of nominal strain counted from where the "
         "strip is taut, the hinge of the loading curve",
         conditions=conditions,
-        flags=pull.flags + several_loadings(pull, "first"),
+        flags=pull.flags
+        + disagreement(curve, inside, config.own_columns_tolerance)
+        + several_loadings(pull, "first"),
         diagnostics={"slack_strain": slack.strain},
         further=(Contribution("where the strip is taut", bend * slack.u_strain, shared=False),),
     )

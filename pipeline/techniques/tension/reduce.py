@@ -41,7 +41,9 @@ def reduce(
         file = recorded(recording)
         gauge = register_length(specimen.numbers, "gauge_length_m")
         section = rectangular_section(specimen.numbers)
-        curve = stress_strain(file, section, gauge, "gauge length", context.machine)
+        curve = stress_strain(
+            file, section, gauge, "gauge length", context.machine, config.own_stress_refused
+        )
         curve = by_extensometer(curve, config)
     except FitRefused as error:
         return nothing_measured(specimen, (MODULI[0], STRENGTH, ELONGATION), error, recording)

@@ -74,6 +74,9 @@ def elongation_at_break(pull: Pull, conditions: Mapping[str, Condition]) -> Meas
         Contribution("sampling interval at break", step, shared=False),
         *relative_lines(elongation, pull.curve.strain_budget),
     )
+    u_machine = pull.curve.u_compliance_per_Pa * abs(float(pull.curve.nominal_stress_Pa[last]))
+    if u_machine > 0.0:
+        budget += (Contribution("machine compliance", u_machine, shared=True),)
     how = "nominal strain of the last sample before the load collapses"
     if pull.rupture.end != "broke":
         how = "nominal strain at the greatest stress, without a break"
