@@ -80,7 +80,7 @@ def test_tensile_moduli_are_refused_with_counts(real: tuple[Folders, dict[str, A
     assert len(refused) == 7
     assert all(r["key"] == "tensile_modulus" for r in refused)
     assert all(
-        "samples in the window of 0-1 % strain, 10 are needed" in r["reason"] for r in refused
+        "samples in the window of 0-1 % strain, 5 are needed" in r["reason"] for r in refused
     )
 
 
