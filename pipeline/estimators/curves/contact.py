@@ -13,7 +13,13 @@ from deamat.core.errors import FitRefused
 from deamat.estimators.curves.search import lowest
 
 _CANDIDATES = 64
+_FARTHEST = 10.0  # contact point before the record, in spans of its depth
+_AIR_TOLD = 12.0  # F of a line in air: one sound record in two thousand is taken for contact
 _ROUNDING = 1e-16  # part of a sum of squares: the contact point is searched to 1e-9 of its grid
+
+
+class StartsInContact(FitRefused):
+    """A record without a line in air before the contact."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +37,7 @@ class Contact:
     in_air, in_contact : samples before and after the contact point
     residual_sd : noise of the load `[N]`
     independent_samples : `n (1 - rho) / (1 + rho)` for residuals of autocorrelation rho
+    per_tilt : relative change of K for each N/m of a tilt that no air shows; 0 with air `[m/N]`
     """
 
     exponent: float
@@ -45,6 +52,7 @@ class Contact:
     in_contact: int
     residual_sd: float
     independent_samples: float
+    per_tilt: float = 0.0
 
     def air(self, depth: FloatArray) -> FloatArray:
         """Load in air at these depths, shape (n,) `[N]`."""
@@ -73,6 +81,7 @@ def fit_contact(
 
     Raises
     ------
+    StartsInContact : the load rises from the first samples on
     FitRefused : too few samples, no place for a contact point, or a load that nowhere begins to
         rise
 
@@ -96,10 +105,10 @@ def fit_contact(
     if math.isinf(profile(depth0)):
         raise FitRefused("the load nowhere begins to rise: the tip never touched", found)
     if best == 0:
-        raise FitRefused(
-            f"the load rises from the start: fewer than {min_air} samples lie in air before the "
-            "contact point, so neither it nor the zero of the load is known; start the approach "
-            "farther above the surface",
+        raise StartsInContact(
+            "the record starts in contact, the load rises from the first sample on: fewer than "
+            f"{min_air} samples lie in air before the contact point, so neither it nor the zero of "
+            "the load is known; start the approach farther above the surface",
             found,
         )
     if best == _CANDIDATES - 1:
@@ -110,9 +119,83 @@ def fit_contact(
     return _described(depth, load, exponent, depth0)
 
 
-def _profile(depth: FloatArray, load: FloatArray, exponent: float) -> Callable[[float], float]:
+def fit_in_contact(
+    depth: FloatArray, load: FloatArray, exponent: float, min_air: int, min_contact: int
+) -> Contact:
+    r"""Fit `P = p_0 + K (h - h_0)_+^m` to a record that starts in contact.
+
+    The contact point lies before the record, or among its first samples; the load there is as
+    unknown as it is. A tilt of the load cannot be told from the contact itself and is zero:
+    `per_tilt` is what one would change.
+
+    Parameters
+    ----------
+    depth, load, exponent : as for `fit_contact`; a flat punch (m = 1) has no contact point to find
+    min_air : the contact point is searched up to this sample
+    min_contact : samples that must follow it
+
+    Raises
+    ------
+    FitRefused : too few samples, or a load that keeps to a straight line: any contact point far
+        enough before the record fits it
+    """
+    n = depth.size
+    if n < min_air + min_contact or exponent <= 1.0:
+        raise FitRefused(f"{n} samples do not tell where the contact began")
+    ordered = np.sort(depth)
+    first, span = float(ordered[0]), float(ordered[-1] - ordered[0])
+    grid = np.concatenate(
+        [
+            first - span * np.geomspace(_FARTHEST, 1e-4, _CANDIDATES),
+            np.linspace(first, float(ordered[min_air - 1]), _CANDIDATES // 4),
+        ]
+    )
+    depth0, best = lowest(_profile(depth, load, exponent, tilted=False), grid)
+    if best == 0:
+        raise FitRefused(
+            "the load keeps to a straight line from the first sample on: the contact may have "
+            "begun anywhere before"
+        )
+    return _described(depth, load, exponent, depth0, tilted=False)
+
+
+def has_air(with_air: Contact, without: Contact) -> bool:
+    """Tell whether a line in air explains a record better than contact from its start on.
+
+    Parameters
+    ----------
+    with_air, without : `fit_contact` and `fit_in_contact` of the same samples
+
+    The former has one parameter more, and must leave less by more than its noise (F test).
+    """
+    n = with_air.in_air + with_air.in_contact
+    squares = with_air.residual_sd**2 * (n - 4)
+    more = without.residual_sd**2 * (n - 3) - squares
+    told: bool = more * min(with_air.independent_samples, n) > _AIR_TOLD * squares
+    return told
+
+
+def has_kink(contact: Contact, load: FloatArray, depth: FloatArray) -> bool:
+    """Tell a flat punch that comes from air into contact from one straight line (F test).
+
+    Parameters
+    ----------
+    contact : `fit_contact` of these samples with m = 1
+    load, depth : shape (n,) each
+    """
+    x, y = depth - depth.mean(), load - load.mean()
+    rest = y - x * (float(x @ y) / float(x @ x))
+    squares = contact.residual_sd**2 * (x.size - 4)
+    told: float = (float(rest @ rest) - squares) * min(contact.independent_samples, x.size)
+    return bool(told > 2.0 * _AIR_TOLD * squares)
+
+
+def _profile(
+    depth: FloatArray, load: FloatArray, exponent: float, *, tilted: bool = True
+) -> Callable[[float], float]:
     """Sum of squares as a function of the contact point; infinite where K would not be positive."""
-    line, _ = np.linalg.qr(np.column_stack([np.ones_like(depth), depth - depth.mean()]))
+    columns = [np.ones_like(depth), depth - depth.mean()] if tilted else [np.ones_like(depth)]
+    line, _ = np.linalg.qr(np.column_stack(columns))
     rest = load - line @ (line.T @ load)
     total = float(rest @ rest)
 
@@ -125,38 +208,53 @@ def _profile(depth: FloatArray, load: FloatArray, exponent: float) -> Callable[[
     return cost
 
 
-def _described(depth: FloatArray, load: FloatArray, exponent: float, depth0: float) -> Contact:
+def _described(
+    depth: FloatArray, load: FloatArray, exponent: float, depth0: float, *, tilted: bool = True
+) -> Contact:
     """Return all parameters at the best contact point, with their standard errors."""
     touching = depth > depth0
     above = np.maximum(depth - depth0, 0.0)
-    columns = np.column_stack([np.ones_like(depth), depth, above**exponent])
+    air = [np.ones_like(depth), depth] if tilted else [np.ones_like(depth)]
+    columns = np.column_stack([*air, above**exponent])
+    k = len(air)
     scales = np.abs(columns).max(axis=0)
     scaled, *_ = np.linalg.lstsq(columns / scales, load, rcond=None)
-    offset, tilt, stiffness = (scaled / scales).tolist()
+    found = (scaled / scales).tolist()
+    stiffness = float(found[k])
     residual = load - columns @ (scaled / scales)
     shift = np.zeros_like(depth)
     shift[touching] = -stiffness * exponent * above[touching] ** (exponent - 1.0)
     jacobian = np.column_stack([columns, shift])
-    independent = independent_samples(residual, 4, float(np.square(load - load.mean()).sum()))
+    parameters = k + 2
+    total = float(np.square(load - load.mean()).sum())
+    independent = independent_samples(residual, parameters, total)
     u_full = standard_errors(jacobian, residual, independent)
     # what not knowing the contact point adds is a matter of the depths alone
     even = np.ones_like(depth)
-    widened = standard_errors(jacobian, even, even.size)[2]
-    known = standard_errors(columns, even, even.size)[2] / widened
+    widened = standard_errors(jacobian, even, even.size)[k]
+    known = standard_errors(columns, even, even.size)[k] / widened
     return Contact(
         exponent=exponent,
         stiffness=stiffness,
         depth0=depth0,
-        offset=offset,
-        tilt=tilt,
-        u_stiffness=float(u_full[2]),
-        u_stiffness_alone=float(known * u_full[2]),
-        u_depth0=float(u_full[3]),
+        offset=float(found[0]),
+        tilt=float(found[1]) if tilted else 0.0,
+        u_stiffness=float(u_full[k]),
+        u_stiffness_alone=float(known * u_full[k]),
+        u_depth0=float(u_full[k + 1]),
         in_air=int(depth.size - touching.sum()),
         in_contact=int(touching.sum()),
-        residual_sd=math.sqrt(float(residual @ residual) / (depth.size - 4)),
+        residual_sd=math.sqrt(float(residual @ residual) / (depth.size - parameters)),
         independent_samples=independent,
+        per_tilt=0.0 if tilted else _per_tilt(jacobian, depth) / stiffness,
     )
+
+
+def _per_tilt(jacobian: FloatArray, depth: FloatArray) -> float:
+    """Change of K when a tilt of 1 N/m is in the load and not in the fit."""
+    scales = np.abs(jacobian).max(axis=0)
+    taken, *_ = np.linalg.lstsq(jacobian / scales, depth, rcond=None)
+    return abs(float(taken[1] / scales[1]))
 
 
 def independent_samples(residual: FloatArray, parameters: int, total: float) -> float:

@@ -13,6 +13,7 @@ from deamat.core.instruments import Machine
 from deamat.core.quantity import Quantity
 from deamat.core.records import Recording, Specimen
 from deamat.core.units import from_si
+from deamat.techniques.nanoindentation.config import NanoindentationConfig
 from deamat.techniques.shared.geometry import register_length
 
 # shape -> how the load of an elastic half-space rises with depth
@@ -79,13 +80,15 @@ def declared_tip(specimen: Specimen) -> Tip:
     return Tip(shape, radius)
 
 
-def approach(recording: Recording, specimen: Specimen, machine: Machine, part: float) -> Approach:
+def approach(
+    recording: Recording, specimen: Specimen, machine: Machine, config: NanoindentationConfig
+) -> Approach:
     """Find the approach and loading, and refuse a test that the transducer could not finish.
 
     Parameters
     ----------
     machine : `max_travel_m` is where its displacement ends
-    part : of the peak load where the loading ends
+    config : its `loading_end` is the part of the peak load where the loading ends
 
     Raises
     ------
@@ -98,28 +101,51 @@ def approach(recording: Recording, specimen: Specimen, machine: Machine, part: f
     deepest = int(depth.argmax())
     start = int(depth[: deepest + 1].argmin())
     depth, force = depth[start:], force[start:]
-    _refuse_air(depth[: deepest - start + 1], force[: deepest - start + 1])
+    down = slice(0, deepest - start + 1)
+    _refuse_straight(depth[down], force[down], config.min_signal_to_noise)
     air = float(np.median(force[: max((deepest - start) // 10, 1)]))
     peak = float(force.max()) - air
     _refuse_unfinished(float(depth.max()), peak, specimen, machine)
-    end = int(np.argmax(force - air >= part * peak))
+    end = int(np.argmax(force - air >= config.loading_end * peak))
     return Approach(depth, force, min(max(end, 1), deepest - start + 1), start)
 
 
-def _refuse_air(depth: FloatArray, force: FloatArray) -> None:
+def _refuse_straight(depth: FloatArray, force: FloatArray, signal_to_noise: float) -> None:
     """Refuse a load that stays on a straight line within its noise."""
     if depth.size < 5:
         raise FitRefused(f"{depth.size} samples from the farthest retraction to the deepest point")
     x, y = depth - depth.mean(), force - force.mean()
-    bend = float((y - x * float(x @ y) / float(x @ x)).std()) if x.any() else 0.0
-    noise = float(np.median(np.abs(np.diff(force, 2)))) * 1.4826 / math.sqrt(6.0)
-    if bend < _TOUCH * noise:
-        raise FitRefused(
-            f"no contact, or a specimen too soft to feel: over {in_um(depth[-1] - depth[0])} of "
-            f"approach the load keeps to a straight line within {in_uN(bend)}, its noise being "
-            f"{in_uN(noise)}; find the surface again, or use a larger tip",
-            {"bend_N": bend, "noise_N": noise},
-        )
+    slope = float(x @ y) / float(x @ x) if x.any() else 0.0
+    bend = float((y - slope * x).std())
+    noise = noise_of(force)
+    if bend >= _TOUCH * noise:
+        return
+    span = float(depth[-1] - depth[0])
+    rise = slope * span
+    details: dict[str, float | int | str] = {"bend_N": bend, "noise_N": noise, "rise_N": rise}
+    if rise > signal_to_noise * noise:
+        raise FitRefused(straight_from_the_first(rise, span), details)
+    raise FitRefused(
+        f"no contact, or a specimen too soft to feel: over {in_um(span)} of approach the load "
+        f"keeps to a straight line within {in_uN(bend)}, its noise being {in_uN(noise)}; find the "
+        "surface again, or use a larger tip",
+        details,
+    )
+
+
+def noise_of(force: FloatArray) -> float:
+    """Noise of a load, from its second differences `[N]`."""
+    return float(np.median(np.abs(np.diff(force, 2)))) * 1.4826 / math.sqrt(6.0)
+
+
+def straight_from_the_first(rise_N: float, span_m: float) -> str:
+    """Say why a straight line is no indentation, however steep."""
+    return (
+        "the record starts in contact, or never comes to it: from the first sample on the load "
+        f"rises in a straight line, by {in_uN(rise_N)} over {in_um(span_m)}. A flat punch in "
+        "contact and a transducer whose springs are not compensated look the same; start in air, "
+        "above the surface"
+    )
 
 
 def _refuse_unfinished(deepest: float, peak: float, specimen: Specimen, machine: Machine) -> None:

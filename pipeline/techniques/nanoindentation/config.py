@@ -41,6 +41,23 @@ class NanoindentationConfig(Declared):
     max_part_of_radius: float = Field(
         default=0.1, gt=0.0, description="depth over radius of a sphere that is flagged"
     )
+    u_tilt_N_per_m: float = Field(
+        default=0.3,
+        ge=0.0,
+        description="standard uncertainty of the load's tilt where no air shows it: what springs "
+        "of a transducer leave uncompensated; declared, not measured",
+    )
+    least_pull: float = Field(
+        default=0.01, gt=0.0, description="pull-off over peak load that is corrected for"
+    )
+    reach_of_adhesion_m: float = Field(
+        default=3e-10, gt=0.0, description="z_0 of Tabor's parameter: the distance of atoms"
+    )
+    max_disagreement: float = Field(
+        default=0.05,
+        gt=0.0,
+        description="between moduli of loading and unloading, beyond what adhesion explains",
+    )
     tip_modulus_Pa: float = Field(
         default=1.141e12, gt=0.0, description="of diamond; only to say when a tip is not rigid"
     )

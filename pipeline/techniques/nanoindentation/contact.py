@@ -4,37 +4,86 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
 
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
 from deamat.core.records import Flag, Specimen
-from deamat.estimators.curves.contact import Contact, fit_contact
+from deamat.estimators.curves.contact import (
+    Contact,
+    StartsInContact,
+    fit_contact,
+    fit_in_contact,
+    has_air,
+    has_kink,
+)
 from deamat.estimators.curves.slope import FEW_INDEPENDENT
-from deamat.techniques.nanoindentation.approach import EXPONENTS, Approach, Tip, in_um, in_uN
+from deamat.techniques.nanoindentation.approach import (
+    EXPONENTS,
+    Approach,
+    Tip,
+    in_um,
+    in_uN,
+    straight_from_the_first,
+)
 from deamat.techniques.nanoindentation.config import NanoindentationConfig
 
 _CLOSER = 1.5  # residuals of the declared law over those of another that make it the likelier one
-_PULL = 0.02  # part of the peak load from which a pull on the way out is called adhesion
+_STEEP = 0.01  # rise of the line in air over that of the contact from which it may be contact
 
 
-def fitted_contact(
-    made: Approach, shape: str, config: NanoindentationConfig
-) -> tuple[Contact, tuple[Flag, ...]]:
-    """Fit the loading law of the declared tip, and insist on a load that stands out of its noise.
+@dataclass(frozen=True, slots=True)
+class Fitted:
+    """The loading law of the declared tip, fitted.
 
-    Returns
-    -------
-    the contact, and a flag where the law of another tip is closer to the load
+    Parameters
+    ----------
+    flags : that the record starts in contact
+    closer : why the law of another tip is the likelier one; empty where it is not
+    """
+
+    contact: Contact
+    flags: tuple[Flag, ...] = ()
+    closer: str = ""
+
+
+def fitted_contact(made: Approach, shape: str, config: NanoindentationConfig) -> Fitted:
+    """Fit the loading law of the declared tip, with air before the contact or without.
 
     Raises
     ------
-    FitRefused : see `estimators.contact.fit_contact`; or the load, or the stiffness, is too
-        uncertain to be one
+    FitRefused : see `estimators.contact`
     """
     depth, force = made.loading()
-    fits = _fits(depth, force, (shape, *(name for name in EXPONENTS if name != shape)), config)
-    contact = fits[shape]
-    closer = _closer(fits, shape)
+    try:
+        fits = _fits(depth, force, (shape, *(n for n in EXPONENTS if n != shape)), config)
+    except StartsInContact as error:
+        return _from_the_first(depth, force, shape, config, error)
+    contact, closer = fits[shape], _closer(fits, shape)
+    # a sphere's load is held to another tip's only where it starts in air
+    if (shape != "flat" or not closer) and _may_start_in_contact(contact, depth):
+        inside = _without_air(depth, force, contact, shape, config)
+        if inside is not None:
+            return inside
+    return Fitted(contact, closer=closer)
+
+
+def insist_on_contact(
+    fitted: Fitted, made: Approach, config: NanoindentationConfig
+) -> tuple[Flag, ...]:
+    """Insist on a load that stands out of its noise, and on a stiffness that is known.
+
+    Returns
+    -------
+    flags where the record starts in contact, or where the law of another tip is closer to the load
+
+    Raises
+    ------
+    FitRefused : the load, or the stiffness, is too uncertain to be one
+    """
+    contact, closer, depth = fitted.contact, fitted.closer, made.loading()[0]
     relative = contact.u_stiffness / contact.stiffness
     if closer and relative > config.max_relative_uncertainty:
         raise FitRefused(closer, {"relative_uncertainty": relative})
@@ -43,11 +92,73 @@ def fitted_contact(
         raise FitRefused(
             f"the stiffness of the contact is known to {100 * relative:.2g} % only "
             f"({100 * config.max_relative_uncertainty:g} % is allowed), its contact point to "
-            f"{in_um(contact.u_depth0)} in {in_um(float(depth.max()) - contact.depth0)} of depth; "
+            f"{in_um(contact.u_depth0)} in {in_um(float(depth.max()) - contact.depth0)} of depth"
+            f"{'; the record starts in contact' if fitted.flags else ''}; "
             "indent deeper, start farther above the surface or sample longer",
             {"relative_uncertainty": relative, "u_contact_m": contact.u_depth0},
         )
-    return contact, (Flag("another-tip-fits-better", closer),) if closer else ()
+    return fitted.flags + ((Flag("another-tip-fits-better", closer),) if closer else ())
+
+
+def _may_start_in_contact(contact: Contact, depth: FloatArray) -> bool:
+    """Tell quickly whether what was taken for a tilt in air is steep enough to be contact."""
+    deepest = float(depth.max())
+    rise = float(contact.load(depth).max())
+    return contact.tilt * (deepest - contact.depth0) > _STEEP * rise
+
+
+def _without_air(
+    depth: FloatArray,
+    force: FloatArray,
+    contact: Contact,
+    shape: str,
+    config: NanoindentationConfig,
+) -> Fitted | None:
+    """Fit a record as one that starts in contact; None where a line in air explains it better."""
+    if EXPONENTS[shape] == 1.0:
+        if has_kink(contact, force, depth):
+            return None
+        raise FitRefused(straight_from_the_first(float(np.ptp(force)), float(np.ptp(depth))))
+    try:
+        inside = fit_in_contact(
+            depth, force, EXPONENTS[shape], config.min_air_samples, config.min_contact_samples
+        )
+    except FitRefused:
+        return None
+    if has_air(contact, inside):
+        return None
+    return Fitted(inside, (_starts_in_contact(inside),))
+
+
+def _from_the_first(
+    depth: FloatArray,
+    force: FloatArray,
+    shape: str,
+    config: NanoindentationConfig,
+    error: FitRefused,
+) -> Fitted:
+    """Fit a record in which no line in air was found.
+
+    Raises
+    ------
+    FitRefused : no contact from the first sample on either
+    """
+    try:
+        inside = fit_in_contact(
+            depth, force, EXPONENTS[shape], config.min_air_samples, config.min_contact_samples
+        )
+    except FitRefused:
+        raise error from None
+    return Fitted(inside, (_starts_in_contact(inside),))
+
+
+def _starts_in_contact(contact: Contact) -> Flag:
+    return Flag(
+        "starts-in-contact",
+        "the record starts in contact, or with too few samples in air: contact point (at a depth "
+        f"of {in_um(contact.depth0)}) and zero of the load ({in_uN(contact.offset)}) are fitted "
+        "with the modulus; a tilt of the load, which only air shows, is in the uncertainty",
+    )
 
 
 def _closer(fits: Mapping[str, Contact], shape: str) -> str:
@@ -86,8 +197,13 @@ def contact_of_pyramid(made: Approach, part: float, config: NanoindentationConfi
     """
     depth, force = made.loading(part)
     fits = _fits(depth, force, ("spherical", "berkovich"), config)
-    contact = min(fits.values(), key=lambda fit: fit.residual_sd)
+    shape, contact = min(fits.items(), key=lambda fit: fit[1].residual_sd)
     _refuse_faint(contact, depth, config)
+    if _may_start_in_contact(contact, depth) and _without_air(depth, force, contact, shape, config):
+        raise FitRefused(
+            "the record starts in contact: what a pyramid's area goes by, the depth from its first "
+            "touch, is not known; start in air, farther above the surface"
+        )
     return contact
 
 
@@ -108,7 +224,7 @@ def _fits(
 
 
 def curve_flags(made: Approach, contact: Contact) -> tuple[Flag, ...]:
-    """Flag residuals that run together, and a tip that was held back on its way out."""
+    """Flag residuals that run together."""
     flags = []
     if contact.independent_samples < FEW_INDEPENDENT:
         flags.append(
@@ -117,17 +233,6 @@ def curve_flags(made: Approach, contact: Contact) -> tuple[Flag, ...]:
                 f"{made.end} samples of the loading count as {contact.independent_samples:.1f}: "
                 "the curve departs from its law or the load drifts, and the standard error of the "
                 "stiffness is rough",
-            )
-        )
-    held = -float((made.force_N - contact.air(made.depth_m))[made.end :].min(initial=0.0))
-    peak = float(contact.load(made.depth_m[: made.end]).max())
-    if held > max(_PULL * peak, 5.0 * contact.residual_sd):
-        flags.append(
-            Flag(
-                "adhesion",
-                f"the tip was held back by {in_uN(held)} on its way out, {100 * held / peak:.2g} "
-                "% of the peak load; a law without adhesion takes the contact for smaller than "
-                "it was and the modulus for larger",
             )
         )
     return tuple(flags)

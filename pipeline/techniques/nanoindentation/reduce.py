@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from deamat.core.errors import FitRefused
 from deamat.core.instruments import Machine
@@ -14,6 +14,13 @@ from deamat.core.technique import Context
 from deamat.core.units import from_si
 from deamat.estimators.curves.contact import Contact
 from deamat.estimators.curves.unloading import fit_unloading
+from deamat.techniques.nanoindentation.adhesion import (
+    Pull,
+    adhesion_flags,
+    corrected_flag,
+    pull,
+    without_adhesion,
+)
 from deamat.techniques.nanoindentation.approach import Approach, Tip, approach, declared_tip
 from deamat.techniques.nanoindentation.config import (
     IDEAL_BERKOVICH,
@@ -25,6 +32,7 @@ from deamat.techniques.nanoindentation.contact import (
     contact_of_pyramid,
     curve_flags,
     fitted_contact,
+    insist_on_contact,
     size_flags,
 )
 from deamat.techniques.nanoindentation.result import Indent, LoadingLaw
@@ -55,13 +63,21 @@ def reduce(
     try:
         file = recorded(recording)
         tip = declared_tip(specimen)
-        made = approach(file, specimen, context.machine, config.loading_end)
+        made = approach(file, specimen, context.machine, config)
         if tip.radius is None:
             contact = contact_of_pyramid(made, config.first_loading, config)
-            value = _by_unloading(made, contact, file, context)
+            held = pull(made, contact, config)
+            value = _by_unloading(made, contact, file, context, adhesion_flags(tip, held))
         else:
-            contact, flags = fitted_contact(made, tip.shape, config)
-            value = _by_loading(made, contact, tip, tip.radius, file, context, flags)
+            fitted = fitted_contact(made, tip.shape, config)
+            contact = fitted.contact
+            held = pull(made, contact, config)
+            loaded = Loaded(made, contact, tip, tip.radius, held)
+            if held.sticks and tip.shape == "spherical":
+                value = _by_way_out(loaded, file, context)
+            else:
+                flags = insist_on_contact(fitted, made, config) + adhesion_flags(tip, held)
+                value = _by_loading(loaded, file, context, flags)
     except FitRefused as error:
         return nothing_measured(specimen, YIELDS, error, recording, _as_read(recording))
     depth = float(made.depth_m[: made.end].max()) - contact.depth0
@@ -80,27 +96,78 @@ def _as_read(recording: Recording | None) -> Indent | None:
     return Indent(recording.columns["depth_m"], recording.columns["force_N"])
 
 
+@dataclass(frozen=True, slots=True)
+class Loaded:
+    """A tip with a radius, how it was brought into contact, and how it was held back."""
+
+    made: Approach
+    contact: Contact
+    tip: Tip
+    radius: Quantity
+    held: Pull
+
+    @property
+    def hertz_Pa(self) -> float:
+        """Reduced modulus of a sphere's loading by Hertz' law."""
+        return 0.75 * self.contact.stiffness / math.sqrt(self.radius.value)
+
+    @property
+    def unseen(self) -> float:
+        """Relative standard uncertainty by a pull of a sphere that the noise would hide."""
+        return self.held.unseen / math.sqrt(3.0) if self.tip.shape == "spherical" else 0.0
+
+
+def _by_way_out(
+    loaded: Loaded, recording: Recording, context: Context[NanoindentationConfig]
+) -> MeasuredValue:
+    """Modulus from the way out of a sphere that sticks."""
+    config, made, contact, radius = context.config, loaded.made, loaded.contact, loaded.radius
+    found, top = without_adhesion(made, contact, radius.value, loaded.hertz_Pa, loaded.held, config)
+    noise = loaded.held.noise_N / found.pull_off
+    budget = (
+        Contribution("scatter about the way out", found.u_scatter, shared=False),
+        Contribution("pull-off force", found.per_pull_off * noise, shared=False),
+        Contribution("tip radius", 0.5 * radius.standard_uncertainty / radius.value, shared=True),
+        *_machine_budget(context.machine, 1.5),
+    )
+    diagnostics: dict[str, Detail] = {
+        **_contact_diagnostics(contact),
+        "pull_off_N": found.pull_off,
+        "work_of_adhesion_J_per_m2": found.work,
+        "tabor_parameter": found.tabor,
+        "reduced_modulus_by_hertz_Pa": loaded.hertz_Pa,
+    }
+    return _value(
+        found.reduced_modulus, budget, recording, config,
+        (made.start + top + found.first, made.start + top + found.last), diagnostics,
+        method=f"spherical tip that sticks, {found.model} with the measured pull-off, fitted to "
+        "the way out",
+        flags=(corrected_flag(found, loaded.held, loaded.hertz_Pa),),
+    )  # fmt: skip
+
+
 def _by_loading(
-    made: Approach,
-    contact: Contact,
-    tip: Tip,
-    radius: Quantity,
+    loaded: Loaded,
     recording: Recording,
     context: Context[NanoindentationConfig],
     flags: tuple[Flag, ...],
 ) -> MeasuredValue:
     """Modulus from the stiffness K of a loading law, `P = K h^m`."""
-    config = context.config
-    if tip.shape == "flat":
+    config, made, contact, radius = context.config, loaded.made, loaded.contact, loaded.radius
+    if loaded.tip.shape == "flat":
         reduced, power, law = contact.stiffness / (2.0 * radius.value), 1.0, "P = 2 a E* h"
     else:
-        reduced = 0.75 * contact.stiffness / math.sqrt(radius.value)
+        reduced = loaded.hertz_Pa
         power, law = 0.5, "P = 4/3 E* sqrt(R) h^1.5"
     alone = contact.u_stiffness_alone
     point = math.sqrt(max(contact.u_stiffness**2 - alone**2, 0.0))
     budget = (
         Contribution("scatter about the loading law", alone / contact.stiffness, shared=False),
         Contribution("contact point", point / contact.stiffness, shared=False),
+        Contribution(
+            "tilt of the load, without air", contact.per_tilt * config.u_tilt_N_per_m, shared=True
+        ),
+        Contribution("adhesion that noise hides", loaded.unseen, shared=True),
         # one tip made all indents, so whatever its radius is wrong by is wrong in all of them
         Contribution("tip radius", power * radius.standard_uncertainty / radius.value, shared=True),
         *_machine_budget(context.machine, contact.exponent),
@@ -117,14 +184,18 @@ def _by_loading(
     }
     return _value(
         reduced, budget, recording, config, span, diagnostics,
-        method=f"{tip.shape} tip, {law}, fitted to the loading together with the contact point and "
-        "the line in air",
+        method=f"{loaded.tip.shape} tip, {law}, fitted to the loading together with the contact "
+        f"point and the {'zero of the load' if contact.per_tilt else 'line in air'}",
         flags=flags,
     )  # fmt: skip
 
 
 def _by_unloading(
-    made: Approach, contact: Contact, recording: Recording, context: Context[NanoindentationConfig]
+    made: Approach,
+    contact: Contact,
+    recording: Recording,
+    context: Context[NanoindentationConfig],
+    flags: tuple[Flag, ...],
 ) -> MeasuredValue:
     """Modulus from the stiffness at peak load of a pyramid's unloading."""
     config = context.config
@@ -152,9 +223,8 @@ def _by_unloading(
         Contribution("pyramid against cone (beta)", config.u_beta, shared=True),
         *_machine_budget(context.machine, 1.0 + 0.5 * order),
     )
-    flags: tuple[Flag, ...] = ()
     if config.area_function == IDEAL_BERKOVICH:
-        flags = (
+        flags += (
             Flag(
                 "ideal-tip-area",
                 f"the area function is that of an ideal pyramid, {IDEAL_BERKOVICH[0]} h_c^2; a "

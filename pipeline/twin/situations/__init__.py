@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from deamat.twin.situations import breakdown, permittivity, tension
+from deamat.twin.situations import breakdown, nanoindentation, permittivity, tension
 from deamat.twin.situations.situation import Situation
 
 SITUATIONS: dict[str, Situation] = {
@@ -11,5 +11,6 @@ SITUATIONS: dict[str, Situation] = {
         *tension.SITUATIONS,
         *permittivity.SITUATIONS,
         *breakdown.SITUATIONS,
+        *nanoindentation.SITUATIONS,
     )
 }

@@ -123,7 +123,8 @@ NOISE = np.random.default_rng(5).normal(0.0, 0.01, DEPTH.size)
         (
             DEPTH[60:],
             load(1.5)[60:] + NOISE[60:],
-            "the load rises from the start: fewer than 10 samples lie in air before the contact "
+            "the record starts in contact, the load rises from the first sample on: fewer than "
+            "10 samples lie in air before the contact "
             "point, so neither it nor the zero of the load is known; start the approach farther "
             "above the surface",
         ),
