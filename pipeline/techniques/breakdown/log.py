@@ -57,7 +57,7 @@ def seen_in_log(specimen: Specimen, recording: Recording, config: BreakdownConfi
         budget=_budget(voltage, u_V, step_V, broken=broken, steps=steps is not None),
         flags=(
             *_flags_of_end(found, broken, sure, current_A is not None),
-            *_flags_of_current(found, config),
+            *_flags_of_current(found, config, has_current=current_A is not None),
             *_flags_of_rise(specimen, found, rise, steps, broken=broken, config=config),
             *_flags_of_monitor(found, voltage, step_V, interval_s, steps, config),
             *_disagreement(specimen, found, voltage, config),
@@ -214,12 +214,16 @@ _UNSURE: dict[End, str] = {
     "spiked: it broke and the log was too slow to show the current, or it was switched off",
     "part lost without current": "a part of the voltage was lost for good and no current was "
     "recorded: it broke and the amplifier's current limit held the rest, or it was turned down",
+    "slow fall without current": "the voltage fell in several samples, far faster than it had "
+    "risen, and no current was recorded: it broke and collapsed slowly, or it was turned down",
     "turned down": "the voltage fell slowly and no current was recorded: it was turned down, or "
     "it broke and collapsed slowly",
 }
 
 
-def _flags_of_current(found: Breakdown, config: BreakdownConfig) -> tuple[Flag, ...]:
+def _flags_of_current(
+    found: Breakdown, config: BreakdownConfig, *, has_current: bool
+) -> tuple[Flag, ...]:
     flags = []
     if found.clearings:
         first = config.after_clearing == "first breakdown"
@@ -246,10 +250,14 @@ def _flags_of_current(found: Breakdown, config: BreakdownConfig) -> tuple[Flag, 
         flags.append(
             Flag(
                 "flashover",
-                f"at {at} kV{more} a part of the voltage was lost and came back; discarded",
+                f"at {at} kV{more} a part of the voltage was lost and came back; discarded"
+                + ("" if has_current else _NO_CURRENT),
             )
         )
     return tuple(flags)
+
+
+_NO_CURRENT = " (without a current it cannot be told from a breakdown that cleared: self-clearing)"
 
 
 def _places(events: tuple[Event, ...]) -> str:

@@ -32,6 +32,7 @@ End = Literal[
     "held by the current limit",
     "self-clearing",
     "collapse without current",
+    "slow fall without current",
     "part lost without current",
     "amplifier limit",
     "turned down",
@@ -45,12 +46,15 @@ BROKEN: tuple[End, ...] = (
     "held by the current limit",
     "self-clearing",
     "collapse without current",
+    "slow fall without current",
     "part lost without current",
 )
 _LOST_NOISE = 10.0  # standard deviations: the greatest of many samples is itself 3 to 4 above
 _DIP_NOISE = 6.0  # of one sample against the one before
 _LEAST_DIP = 0.002  # of the voltage, where there is no noise
 _LEAST_LOSS = 0.02  # of the greatest voltage: ripple of a monitor matters where the ramp begins
+_LEAST_STEP = 0.005  # of the greatest voltage: a step down that is looked into without a current
+_SUDDEN = 3.0  # times the rate of rise: a fall that nobody turns
 _PLAIN = 5e-4  # noise over voltage, below which the greatest sample is taken as it is
 
 
@@ -165,7 +169,10 @@ class _Search:
             criteria.dip * self.greatest[:-1],
             max(_LOST_NOISE * self.noise_V, _LEAST_LOSS * float(self.greatest[-1])),
         )
-        self.losses = 1 + np.flatnonzero(v[1:] < self.greatest[:-1] - allowed)
+        lost = v[1:] < self.greatest[:-1] - allowed
+        if current_A is None:
+            lost |= _sudden(v, self.noise_V)
+        self.losses = 1 + np.flatnonzero(lost)
         self.jumps = (
             np.zeros(0, dtype=np.intp)
             if current_A is None
@@ -235,14 +242,15 @@ class _Search:
         if back is not None:
             self.flashovers.append(before_V)
             return None, back + 1
-        kept = self.current_A is None and not (self.v[loss:] < floor).any()
-        sure = self.current_A is not None
-        return (
-            self._ended(
-                "part lost without current" if kept else "turned down", loss - 1, sure=sure
-            ),
-            self.v.size,
-        )
+        if self.current_A is not None:
+            return self._ended("turned down", loss - 1), self.v.size
+        under = np.flatnonzero(self.v[loss:] < floor)
+        how: End = "part lost without current"
+        if under.size:  # a film gives way far faster than a voltage is raised, and turned down
+            rise = before_V / max(loss - foot(self.v), 1)
+            sudden = 0.5 * before_V / float(under[0] + 1) > _SUDDEN * rise
+            how = "slow fall without current" if sudden else "turned down"
+        return self._ended(how, loss - 1, sure=False), self.v.size
 
     def _event(self, at: int, first: int) -> Event:
         """Describe what happens at a jump or loss: the voltage before it, and how much is lost."""
@@ -318,6 +326,16 @@ class _Search:
         first = self.clearings[0]
         found = self._ended("self-clearing", first.last, spike_A=first.current_A)
         return replace(found, clearings=ended.clearings, spikes=ended.spikes)
+
+
+def _sudden(v: FloatArray, noise_V: float) -> NDArray[np.bool_]:
+    """Steps down that neither the noise nor the resolution of a monitor makes, shape (n - 1,)."""
+    step = v[1:] - v[:-1]
+    down = -step > max(_LEAST_STEP * float(v.max()), 2.0 * _DIP_NOISE * noise_V)
+    if down.any():
+        resolution = float(np.min(np.abs(step), where=step != 0.0, initial=np.inf))
+        down &= -step > 1.5 * resolution
+    return np.asarray(down)
 
 
 def _next(places: NDArray[np.intp], at: int, none: int) -> int:
