@@ -15,6 +15,7 @@ from deamat.consistency.swaps import swapped_files
 from deamat.core.errors import RawFileError
 from deamat.core.flags import Flag
 from deamat.core.records import Measurement, Source, Specimen
+from deamat.core.register import SHEET
 
 _HINT = "exclude the wrong one in config/exclusions.toml, with the reason"
 
@@ -104,7 +105,7 @@ def _copies(
     members: Sequence[Member], noisy: Callable[[str], bool]
 ) -> tuple[dict[str, list[Flag]], dict[str, RawFileError]]:
     files = [
-        File(m.specimen.id, m.source.path, m.source.sha256, m.seen.sketch)
+        File(m.specimen.id, m.source.path + _sheet(m), m.source.sha256 + _sheet(m), m.seen.sketch)
         for m in members
         if m.source is not None and m.seen is not None
     ]
@@ -124,6 +125,12 @@ def _copies(
             else:
                 flags[one.specimen].append(_flag(copy, other))
     return flags, errors
+
+
+def _sheet(member: Member) -> str:
+    """Name the sheet, `#Sheet`, where several specimens share a workbook."""
+    sheet = member.specimen.notes.get(SHEET, "")
+    return f"#{sheet}" if sheet else ""
 
 
 def _error(copy: Copy, one: File, other: File) -> RawFileError:

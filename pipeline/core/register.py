@@ -37,6 +37,16 @@ _LONGEST_SPECIMEN = 120
 _SHOWN = 80  # characters of a bad cell
 
 
+SHEET = "sheet"  # the note that keeps the sheet of `file.xlsx#Sheet`
+_SHEET_OF = re.compile(r"(.+\.(?:xlsx|xlsm|ods))#(.+)", re.IGNORECASE)
+
+
+def split_sheet(file: str) -> tuple[str, str]:
+    """Part `book.xlsx#Specimen 1` into the file and its sheet, empty where none is named."""
+    found = _SHEET_OF.fullmatch(file)
+    return (found[1], found[2].strip()) if found else (file, "")
+
+
 @dataclass(frozen=True, slots=True)
 class RegisterForm:
     """Which register a technique reads, and what its rows are.
@@ -187,16 +197,20 @@ class _Rows:
         for name, key in self.form.conditions.items():
             if name in numbers:
                 conditions[key] = numbers[name].value
+        file, sheet = split_sheet(cells.get("file", ""))
+        notes = {name: cells[name] for name in self.notes if cells[name]}
+        if sheet:
+            notes[SHEET] = sheet
         return Specimen(
             id=" ".join(cells[column] for column in self.identity if cells.get(column)),
             material=cells["material"],
             campaign=self.campaign,
             technique=self.technique,
-            file=self._below(cells["file"]) if cells.get("file") else None,
+            file=self._below(file) if file else None,
             format=cells.get("format") or None,
             numbers=numbers,
             conditions=conditions,
-            notes={name: cells[name] for name in self.notes if cells[name]},
+            notes=notes,
             register=self.path,
             line=line,
         )
@@ -269,7 +283,7 @@ class _Rows:
         """The file that a bad row names, as far as it can be told."""
         if "file" not in self.header or len(row) <= self.header.index("file"):
             return None
-        file = row[self.header.index("file")].strip()
+        file, _ = split_sheet(row[self.header.index("file")].strip())
         return self._below(file) if file else None
 
     def _below(self, file: str) -> str:

@@ -2,7 +2,8 @@
 
 Usage
 -----
-Named `e4990a`; detected by a first line `!Agilent` or `!Keysight` and a line `BEGIN CH1_DATA`.
+Named `e4990a`; detected by a line `!Agilent` or `!Keysight` at the top, perhaps below `!CSV`, and a
+line `BEGIN CH1_DATA`.
 
 Format
 ------
@@ -12,7 +13,8 @@ exponents, `END`. A file without its `END` is cut. One channel to a file.
 
 Columns
 -------
-`frequency_Hz [Hz]` and the pair that was traced, by the names of a plain sweep.
+`frequency_Hz [Hz]`, `series_resistance_ohm [ohm]`, `reactance_ohm [ohm]`; another pair that was
+traced has the names of a plain table.
 
 Uncertainties
 -------------
@@ -33,12 +35,12 @@ from deamat.formats.rewritten import CUT, lines_of, read_rewritten
 
 _NAME = "e4990a"
 _MAKERS = ("!agilent", "!keysight")
+_TOP = 4  # lines
 
 
 def _recognises(head: Head) -> bool:
-    return bool(head) and head[0].casefold().startswith(_MAKERS) and any(
-        line.startswith("BEGIN") for line in head
-    )  # fmt: skip
+    made = any(line.casefold().startswith(_MAKERS) for line in head[:_TOP])
+    return made and any(line.startswith("BEGIN") for line in head)
 
 
 def _read(file: RawFile) -> Recording:

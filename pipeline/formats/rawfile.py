@@ -106,12 +106,14 @@ class RawFile:
     ends_open : the campaign declares that this exporter writes no final line end
     technique : in whose register it is listed, empty where nobody says: plain tables are asked for
         the quantities of that technique
+    sheet : of a workbook, where the register names one
     """
 
     path: str
     data: bytes
     ends_open: bool = False
     technique: str = ""
+    sheet: str = ""
 
     @cached_property
     def sha256(self) -> str:

@@ -78,7 +78,15 @@ def is_workbook(data: bytes) -> bool:
 def _read(file: RawFile) -> Recording:
     found: list[tuple[str, Text, Choice]] = []
     nearest: Choice | None = None
-    for name, rows in _sheets(file):
+    sheets = dict(_sheets(file))
+    if file.sheet and file.sheet not in sheets:
+        raise RawFileError(
+            file.path, f"an Excel workbook without a sheet {file.sheet!r}; it has "
+            f"{', '.join(sheets)}", hint="name one of them behind the # in the register",
+        )  # fmt: skip
+    for name, rows in sheets.items():
+        if file.sheet not in ("", name):
+            continue
         text = Text([_line(row) for row in rows], "utf-8", ended=True)
         choice, near = complete_in(file, text)
         if choice is not None:
@@ -95,7 +103,7 @@ def _read(file: RawFile) -> Recording:
         names = ", ".join(name for name, _, _ in found)
         raise RawFileError(
             file.path, f"an Excel workbook with several tables: sheets {names}",
-            hint="save each sheet as a file of its own, one for each specimen",
+            hint=f"name the sheet in the register: `{file.path.rpartition('/')[2]}#{found[0][0]}`",
         )  # fmt: skip
     name, text, choice = found[0]
     recording = recording_of(file, text.lines, text.encoding, choice, ended=True)

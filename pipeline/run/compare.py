@@ -13,6 +13,7 @@ from deamat.consistency.seen import holds_noise
 from deamat.consistency.together import Member, equal_elsewhere, together
 from deamat.core.errors import RawFileError
 from deamat.core.flags import Flag
+from deamat.core.register import split_sheet
 from deamat.formats.detect import detect
 from deamat.formats.rawfile import RawFile, read_raw
 from deamat.run.build_cache import digest, key_of
@@ -37,7 +38,7 @@ def compare(measured: Sequence[Measured], run: RunContext) -> list[Measured]:
         noticed = together(
             [_member(one) for one in members],
             materials,
-            partial(_noisy, run.folders.raw),
+            partial(_noisy, run.folders.raw, members[0].specimen.technique),
         )
         for one in members:
             place = (campaign, one.specimen.id)
@@ -54,8 +55,9 @@ def _member(one: Measured) -> Member:
     return Member(one.specimen, one.reduced.measurement, one.reduced.seen)
 
 
-def _noisy(raw: Path, path: str) -> bool:
-    file = RawFile(path, read_raw(raw, path))
+def _noisy(raw: Path, technique: str, place: str) -> bool:
+    path, sheet = split_sheet(place)
+    file = RawFile(path, read_raw(raw, path), technique=technique, sheet=sheet)
     return holds_noise(detect(file).read(file))
 
 

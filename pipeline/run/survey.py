@@ -16,7 +16,7 @@ from deamat.core.errors import RawFileError
 from deamat.core.ledger import Failure, FileEntry, Role
 from deamat.core.manifest import Difference, compare, parse_manifest
 from deamat.core.records import Specimen
-from deamat.core.register import REGISTER_FILES, read_register
+from deamat.core.register import REGISTER_FILES, SHEET, read_register
 from deamat.core.slug import Spellings
 from deamat.core.technique import AnyTechnique
 from deamat.formats.documentation import stated_units
@@ -281,11 +281,13 @@ def _claim(specimen: Specimen, result: Survey, owners: dict[str, Specimen]) -> b
         reason = f"{entry.reason}\nnamed in {place}, but not there"
         result.entries[path] = replace(entry, reason=reason)
         return False
-    if path in owners:
-        first = owners[path]
+    sheet = specimen.notes.get(SHEET, "")
+    same = [path, f"{path}#{sheet}"] if sheet else [k for k in owners if k.split("#")[0] == path]
+    first = next((owners[key] for key in same if key in owners), None)
+    if first is not None:
         reason = f"its file is that of {first.id} in line {first.line} already"
         raise RawFileError(specimen.register, reason, specimen.line, None, specimen.id)
-    owners[path] = specimen
+    owners[f"{path}#{sheet}" if sheet else path] = specimen
     result.entries[path] = replace(entry, role="recording")
     return entry.status == "used"
 

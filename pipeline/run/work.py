@@ -13,6 +13,7 @@ from deamat.consistency.seen import Seen, look
 from deamat.core.errors import ConfigError, RawFileError
 from deamat.core.ledger import Failure
 from deamat.core.records import Flag, Measurement, Recording, Specimen
+from deamat.core.register import SHEET
 from deamat.core.technique import Context
 from deamat.formats.detect import by_name, detect
 from deamat.formats.documentation import contradictions
@@ -102,7 +103,8 @@ def source_of(specimen: Specimen) -> str:
 
 
 def _read(task: Task, path: str) -> Recording:
-    file = RawFile(path, read_raw(task.raw, path), task.ends_open, task.specimen.technique)
+    data, sheet = read_raw(task.raw, path), task.specimen.notes.get(SHEET, "")
+    file = RawFile(path, data, task.ends_open, task.specimen.technique, sheet)
     if file.sha256 != task.sha256:
         raise RawFileError(path, "the file changed while it was being read", hint="run again")
     recording = _format(task.specimen, file).read(file)

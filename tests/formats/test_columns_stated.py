@@ -16,6 +16,7 @@ from deamat.materials.curves import unit_of_column
 from tests.conftest import ROOT
 from tests.formats.samples import BY_NAME
 from tests.formats.test_flow import ANTON_PAAR, COMPASS, RHEODATA, SCHMID, TAB, utf16
+from tests.formats.test_rewritten import FILES
 from tests.formats.test_viscometer import CSV, LOG
 
 LCR = ROOT / "tests" / "data" / "lcr"
@@ -57,6 +58,7 @@ GOOD: dict[str, list[bytes]] = {
         [f"Function,{f}" for f in ("CPD", "CPRP", "CSD", "CSRS", "RX", "ZTD")],
     ),
     "lcr_csv": plain_sweeps(),
+    **{name: [text.encode()] for name, text in FILES.items()},
     **{name: [sample.data] for name, sample in BY_NAME.items()},
 }
 

@@ -62,6 +62,20 @@ def test_values_are_in_si() -> None:
     assert columns["series_resistance_ohm"].tolist() == [4.9e5, 2.4e5]
 
 
+def test_the_time_may_have_no_column() -> None:
+    text = LVM.replace("X_Columns\tOne", "X_Columns\tNo").replace(
+        "X_Dimension", "X0\t0.0\t\nDelta_X\t0.5\t\nX_Dimension"
+    )
+    for time in ("0.0\t0.0", "0.5\t0.15", "1.0\t0.3"):
+        text = text.replace(f"\n{time}", "\n" + time[3:])
+    assert read(text).columns["time_s"].tolist() == [0.0, 0.5, 1.0]
+    assert "no one Delta_X" in refused(text.replace("Delta_X\t0.5", "Delta_X\t"))
+
+
+def test_the_maker_may_stand_below_the_form() -> None:
+    assert read("!CSV A.01.01\n" + E4990A).source.reader == "e4990a"
+
+
 def test_a_channel_without_a_name_is_said() -> None:
     assert [str(flag) for flag in read(RIGOL).flags] == [
         "label-by-unit: CH1 was taken for voltage_V: its label is unknown, and it is the only "

@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
-import pytest
+import json
+from pathlib import Path
 
+import pytest
+from click.testing import CliRunner
+
+from deamat.cli import cli
 from deamat.core.errors import RawFileError
 from deamat.core.records import Recording
+from deamat.core.register import split_sheet
 from deamat.formats.detect import detect
 from deamat.formats.rawfile import RawFile
 from tests.formats.workbooks import Rows, ods, xlsx
@@ -59,6 +65,19 @@ def test_the_sheet_is_found_by_its_content(data: bytes, sheet: str) -> None:
 def test_two_sheets_that_would_do_are_refused() -> None:
     said = refused(xlsx({"1": TABLE, "2": TABLE}))
     assert "an Excel workbook with several tables: sheets 1, 2" in said
+    assert said.endswith("name the sheet in the register: `x.xlsx#1`")
+
+
+def test_the_register_names_a_sheet() -> None:
+    assert split_sheet("a/x.xlsx#Specimen 2") == ("a/x.xlsx", "Specimen 2")
+    assert split_sheet("a#1.csv") == ("a#1.csv", "")
+    other = [*TABLE[:7], (1.0, 0.5, 7.0)]
+    data = xlsx({"1": TABLE, "2": other})
+    file = RawFile("x.xlsx", data, technique="tension", sheet="2")
+    assert detect(file).read(file).columns["force_N"].tolist() == [0.0, 1.5, 7.0]
+    missing = RawFile("x.xlsx", data, technique="tension", sheet="3")
+    with pytest.raises(RawFileError, match="an Excel workbook without a sheet '3'; it has 1, 2"):
+        detect(missing).read(missing)
 
 
 def test_specimens_side_by_side_are_refused() -> None:
@@ -111,3 +130,31 @@ def test_a_cut_or_odd_archive_is_refused() -> None:
             assert len(read(spoilt).columns["force_N"]) == 3
         except RawFileError:
             continue
+
+
+def test_sheets_of_one_workbook_are_specimens(tmp_path: Path) -> None:
+    """A row for each sheet: neither is a copy of the other, and no sheet is listed twice."""
+    folder = tmp_path / "raw" / "c" / "tension"
+    folder.mkdir(parents=True)
+    sheets = {name: _pulled(scale) for name, scale in (("A", 1.0), ("B", 1.1))}
+    (folder / "b.xlsx").write_bytes(xlsx(sheets))
+    declared = 'title = "t"\nlaboratory = "none"\nlicence = "CC0 1.0"\nsynthetic = true\n'
+    (folder.parent / "campaign.toml").write_text(declared)
+    head = "specimen,material,file,width_mm,thickness_mm,gauge_length_mm\n"
+    for third, words in (
+        ("", ""),
+        ("s3,m1,b.xlsx#A,10,2,40\n", "its file is that of s1 in line 2"),
+    ):
+        rows = "s1,m1,b.xlsx#A,10,2,40\ns2,m1,b.xlsx#B,10,2,40\n"
+        (folder / "specimens.csv").write_text(head + rows + third)
+        done = CliRunner().invoke(
+            cli, ["all", "--raw", str(tmp_path / "raw"), "--processed", str(tmp_path / "out")]
+        )
+        assert words in done.output
+        card = json.loads((tmp_path / "out" / "cards" / "m1.json").read_text())
+        assert {p["n"] for p in card["properties"] if p["key"] == "tensile_modulus"} == {2}
+
+
+def _pulled(scale: float) -> Rows:
+    rows = [(0.01 * i, 0.02 * i, 0.006 * scale * i if i < 150 else 0.01) for i in range(152)]
+    return (("Time", "Extension", "Load"), ("s", "mm", "N"), *rows)
