@@ -3,11 +3,12 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 PYTHON ?=
+COUNT ?= 20000
 QUICK := tests/core tests/formats tests/materials tests/actuator tests/run/test_incremental.py \
   tests/test_cli_design.py tests/test_public.py
 
 .DEFAULT_GOAL := help
-.PHONY: all paper test quick check shell bench chart stability mutants docs schema help clean
+.PHONY: all paper test quick check shell bench chart stability mutants fuzz docs schema help clean
 
 all: $(VENV)/.runtime  ## reprocess raw/ into processed/: read, fit, refuse, publish cards
 	@$(BIN)/deamat all
@@ -39,6 +40,9 @@ stability: $(VENV)/.dev  ## map where estimators hold, flag, refuse or are silen
 mutants: $(VENV)/.dev  ## put 150 slips into each of three packages: how many do the tests notice?
 	@$(BIN)/python -m benchmarks.mutation estimators materials
 	@$(BIN)/python -m benchmarks.mutation run --tests tests/run tests/test_cli.py tests/test_cli_design.py
+
+fuzz: $(VENV)/.dev  ## spoil COUNT=20000 good files and registers: crash, hang, silence? (goes on where it stopped)
+	@$(BIN)/python -m benchmarks.fuzz --count $(COUNT)
 
 docs: $(VENV)/.dev  ## write docs/benchmarks.md, reading-speed.md and the pictures of docs/methods anew
 	@$(BIN)/python -m benchmarks.chart --docs && $(BIN)/python -m benchmarks.stability --docs

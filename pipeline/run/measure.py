@@ -152,7 +152,9 @@ def summarise(
         groups.setdefault((s.campaign, s.material, conditions), []).append(one)
     result = []
     config = run.config.methods[technique.key]
-    for (campaign, material, conditions), members in sorted(groups.items(), key=lambda g: repr(g)):
+    for described in sorted(groups, key=repr):
+        campaign, material, conditions = described
+        members = groups[described]
         good = tuple(m.reduced.measurement for m in members if m.reduced and m.reduced.measurement)
         bare = Group(campaign, material, technique.key, conditions, "", good, None)
         parts = {

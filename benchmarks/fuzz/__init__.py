@@ -1,0 +1,1 @@
+"""Spoils good files and registers, and judges what cards say of them."""

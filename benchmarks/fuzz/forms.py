@@ -1,0 +1,170 @@
+"""The forms that the twin does not write, filled with its recordings or with simulated liquids."""
+
+from __future__ import annotations
+
+import codecs
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from deamat.core.arrays import FloatArray
+
+REMARK = "SYNTHETIC: simulated, not measured"
+Columns = Mapping[str, FloatArray]
+
+
+def _rows(
+    head: Sequence[str],
+    columns: Sequence[tuple[FloatArray, str]],
+    delimiter: str,
+    newline: str = "\n",
+    start: str = "",
+) -> str:
+    """Set columns, each with the format of its numbers, below some header lines."""
+    cells = [[f"{value:{form}}" for value in values.tolist()] for values, form in columns]
+    rows = [start + delimiter.join(row) for row in zip(*cells, strict=True)]
+    return "".join(line + newline for line in (*head, *rows))
+
+
+def phantom(c: Columns, diameter_m: float, height_m: float) -> bytes:
+    """Write a compression curve with its own strain and stress, negative as in that collection."""
+    area_m2 = np.pi / 4.0 * diameter_m**2
+    head = [
+        "synthetic_sample_1",
+        f"{REMARK};",
+        f"Cylinder Diameter: {1e3 * diameter_m:g}mm;",
+        f"Cylinder Height: {1e3 * height_m:g}mm;",
+        "Time (s),Compression (mm),Load (N),Engineering Strain [-],Engineering Stress (kPa)",
+    ]
+    strain, stress = -c["displacement_m"] / height_m, -c["force_N"] / area_m2
+    return _rows(
+        head,
+        [
+            (c["time_s"], ".3f"), (1e3 * c["displacement_m"], ".5f"), (c["force_N"], ".5f"),
+            (strain, ".6f"), (1e-3 * stress, ".6f"),
+        ],
+        ",",
+    ).encode()  # fmt: skip
+
+
+def nexygen(c: Columns) -> bytes:
+    """Write a curve as UTF-16 text with tabs."""
+    head = [f"Sample: {REMARK}", "", "Time (s)\tLoad (N)\tMachine Extension (mm)"]
+    columns = [(c["time_s"], ".3f"), (c["force_N"], ".5f"), (1e3 * c["displacement_m"], ".5f")]
+    text = _rows(head, columns, "\t", "\r\n")
+    return codecs.BOM_UTF16_LE + text.encode("utf-16-le")
+
+
+def mts(c: Columns) -> bytes:
+    """Write a curve with decimal commas, the load in kN."""
+    head = [f"Test Run Name: {REMARK}", "", "Crosshead (mm)\tLoad (kN)\tTime (s)"]
+    columns = [
+        (1e3 * c["displacement_m"], ".5f"), (1e-3 * c["force_N"], ".8f"), (c["time_s"], ".3f"),
+    ]  # fmt: skip
+    text = _rows([], columns, "\t", "\r\n").replace(".", ",")
+    return codecs.BOM_UTF8 + (_rows(head, [], "\t", "\r\n") + text).encode()
+
+
+def zwick(c: Columns) -> bytes:
+    """Write a curve under quoted labels and units."""
+    head = [
+        f'"Remark","{REMARK}"', '"Yield strain","Unknown"',
+        '"Standard travel ","Standard force "', '"mm","N"',
+    ]  # fmt: skip
+    columns = [(1e3 * c["displacement_m"], ".5f"), (c["force_N"], ".6f")]
+    return _rows(head, columns, ",").encode()
+
+
+def soro(c: Columns, width_m: float, thickness_m: float, gauge_length_m: float) -> bytes:
+    """Write a tensile curve as true and engineering strain and stress."""
+    head = [
+        "PARAMETER;INFO;URL;;",
+        f"Specimen Thickness (mm);{1e3 * thickness_m:g};;;",
+        f"Specimen Width (mm);{1e3 * width_m:g};;;",
+        "Standard;ASTM D412;;;",
+        f"Material;{REMARK};;;",
+        ";;;;",
+        "Time (s);True Strain;True Stress (MPa);Engineering Strain;Engineering Stress (MPa)",
+    ]
+    strain = c["displacement_m"] / gauge_length_m
+    stress_MPa = 1e-6 * c["force_N"] / (width_m * thickness_m)
+    columns = [
+        (c["time_s"], ".3f"), (np.log1p(strain), ".7f"), (stress_MPa * (1.0 + strain), ".8f"),
+        (strain, ".7f"), (stress_MPa, ".8f"),
+    ]  # fmt: skip
+    return _rows(head, columns, ";", "\r\n").encode()
+
+
+def e4980a(c: Columns) -> bytes:
+    """Write a sweep as a log of a Keysight E4980A."""
+    head = [
+        "Instrument,Keysight E4980A (synthetic)", "Function,CPD", "Voltage level,1 V",
+        "Aperture,LONG", "Frequency (Hz),Primary,Secondary,Status",
+    ]  # fmt: skip
+    columns = [
+        (c["frequency_Hz"], ".5E"), (c["parallel_capacitance_F"], "+.5E"),
+        (c["loss_tangent"], "+.5E"), (np.zeros_like(c["loss_tangent"]), "+.0f"),
+    ]  # fmt: skip
+    return _rows(head, columns, ",").encode()
+
+
+def liquid(seed: int) -> Columns:
+    """Simulate a flow curve: a power law (K = 30 Pa.s^n, n = 0.6) with 1 % noise."""
+    rng = np.random.default_rng([seed, *b"fuzz liquid"])
+    rate = np.logspace(-1.0, 2.0, 25)
+    stress = 30.0 * rng.normal(1.0, 0.03) * rate**0.6 * rng.normal(1.0, 0.01, rate.size)
+    return {"rate": rate, "stress": stress, "viscosity": stress / rate}
+
+
+def antonpaar(c: Columns) -> bytes:
+    """Write a flow curve with semicolons and decimal commas."""
+    head = ["Shear Rate;Shear Stress;Viscosity", "[1/s];[Pa];[Pa·s]"]
+    columns = [(c["rate"], ".4g"), (c["stress"], ".4g"), (c["viscosity"], ".4g")]
+    body = _rows([], columns, ";", "\r\n").replace(".", ",")
+    return (_rows(head, [], ";", "\r\n") + body).encode()
+
+
+def flow_tab(c: Columns) -> bytes:
+    """Write a flow curve with tabs and units in brackets."""
+    head = ["Point No.\tShear Rate [1/s]\tViscosity [mPa·s]\tTemperature [°C]"]
+    n = c["rate"].size
+    columns = [
+        (np.arange(1.0, n + 1.0), ".0f"), (c["rate"], ".5g"), (1e3 * c["viscosity"], ".1f"),
+        (np.full(n, 22.0), ".0f"),
+    ]  # fmt: skip
+    return _rows(head, columns, "\t", "\r\n").encode()
+
+
+def rheocompass(c: Columns) -> bytes:
+    """Write a flow curve as a German RheoCompass exports an interval."""
+    n = c["rate"].size
+    head = [
+        f"Projekt:\t{REMARK}", "", f"Abschnitt und Datenpunkte:\t1\t{n}",
+        "Abschnittsdaten:\tPunkt Nr.\tZeit\tSchubspannung\tScherrate",
+        "\t\t\tKonstanter Anteil\t", "\t[]\t[s]\t[Pa]\t[1/s]",
+    ]  # fmt: skip
+    points = np.arange(1.0, n + 1.0)
+    columns = [(points, ".0f"), (10.0 * points, ".1f"), (c["stress"], ".5g"), (c["rate"], ".5g")]
+    body = _rows([], columns, "\t", "\r\n", "\t").replace(".", ",")
+    text = _rows(head, [], "\t", "\r\n") + body
+    return codecs.BOM_UTF16_LE + text.encode("utf-16-le")
+
+
+def rheodata(c: Columns) -> bytes:
+    """Write a flow curve in long form, with its sample's name in every row."""
+    columns = [(c["rate"], ".5g"), (c["stress"], ".5g")]
+    return _rows(["sample_id,shear_rate_1/s,stress_Pa"], columns, ",", "\n", "a,").encode()
+
+
+def schmid(c: Columns) -> bytes:
+    """Write a flow curve below `%` lines."""
+    head = ["%ID\tA\t", f"%Material\t{REMARK}\t", "%Shear rate\tShear stress\tViscosity"]
+    head.append("%s^-1\tPa\tPa s")
+    columns = [(c["rate"], ".5g"), (c["stress"], ".5g"), (c["viscosity"], ".5g")]
+    return _rows(head, columns, "\t", "\r\n").encode()
+
+
+FLOW = {
+    "antonpaar": antonpaar, "flow_tab": flow_tab, "rheocompass": rheocompass,
+    "rheodata": rheodata, "schmid": schmid,
+}  # fmt: skip
