@@ -12,8 +12,8 @@ import difflib
 import tempfile
 from pathlib import Path
 
-from benchmarks.fuzz.bench import Bench
 from benchmarks.fuzz.cases import Case
+from benchmarks.fuzz.fuzzer import Fuzzer
 from benchmarks.fuzz.good import ROOT
 from benchmarks.fuzz.judge import BAD, answers
 from benchmarks.fuzz.page import page, rows
@@ -56,8 +56,8 @@ def main() -> int:
 
 def replay(case: Case) -> int:
     """Show what a case changes, what is said of it, and where it crashes."""
-    with tempfile.TemporaryDirectory(prefix="fuzz-") as place, Bench(Path(place)) as bench:
-        good = bench.goods[case.good]
+    with tempfile.TemporaryDirectory(prefix="fuzz-") as place, Fuzzer(Path(place)) as fuzzer:
+        good = fuzzer.goods[case.good]
         spoilt = case.spoil(good)
         if spoilt is None:
             print("this case changes nothing")
@@ -67,7 +67,7 @@ def replay(case: Case) -> int:
             taken = {"register": after.register, **after.files}
             for name in given:
                 _show_change(name, given[name], taken[name])
-            outcome = bench.laboratory(case.good).outcome(after)
+            outcome = fuzzer.runner(case.good).outcome(after)
             for answer in answers(outcome):
                 print(f"  {answer.key}: {answer}")
             for key, reason in outcome.refused:
@@ -76,7 +76,7 @@ def replay(case: Case) -> int:
                 print(f"  rejected: {reason}")
             for failure in outcome.failures:
                 print(failure.traceback)
-        result = bench.judge(case)
+        result = fuzzer.judge(case)
         print(f"alone: {result.alone}\ngroup: {result.group}")
         return 0
 

@@ -11,8 +11,8 @@ from numpy.random import Generator
 
 from benchmarks.fuzz.damage import LOCALE, TEXT
 from benchmarks.fuzz.good import Good
-from benchmarks.fuzz.laboratory import Files
 from benchmarks.fuzz.registers import REGISTER
+from benchmarks.fuzz.runner import Files
 from benchmarks.fuzz.sheet import Register, Sheet
 from benchmarks.fuzz.tables import CELLS, STRUCTURE
 from benchmarks.fuzz.wrong import WRONG

@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 
 from benchmarks.fuzz import forms
-from benchmarks.fuzz.laboratory import Files
+from benchmarks.fuzz.runner import Files
 from benchmarks.fuzz.sheet import Register, Sheet
 from deamat.core.properties import REFERENCE_AGE
 from deamat.formats.detect import detect

@@ -15,7 +15,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-from benchmarks.fuzz.laboratory import Outcome
+from benchmarks.fuzz.runner import Outcome
 from deamat.core.errors import OutOfRange
 from deamat.core.kinds import Condition
 from deamat.core.records import Law, PropertyRecord

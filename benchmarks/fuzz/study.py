@@ -12,8 +12,8 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from benchmarks.fuzz.bench import Bench
 from benchmarks.fuzz.cases import draw
+from benchmarks.fuzz.fuzzer import Fuzzer
 from benchmarks.fuzz.good import ROOT
 from benchmarks.fuzz.judge import Verdict
 
@@ -61,8 +61,8 @@ def _judged(
 ) -> Iterator[Entry]:
     """Judge cases in their order; one worker works in this process."""
     if workers < 2:
-        with Bench(place) as bench:
-            yield from (_entry_of(bench, seed, techniques) for seed in seeds)
+        with Fuzzer(place) as fuzzer:
+            yield from (_entry_of(fuzzer, seed, techniques) for seed in seeds)
         return
     fresh = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(workers, fresh, _begin, (place, techniques)) as pool:
@@ -97,24 +97,24 @@ def _code() -> str:
     return found.hexdigest()[:16]
 
 
-_HERE: dict[str, Bench] = {}
+_HERE: dict[str, Fuzzer] = {}
 _ASKED: list[str] = []
 
 
 def _begin(place: Path, techniques: Sequence[str]) -> None:
-    _HERE["bench"] = Bench(place / str(os.getpid()))
+    _HERE["fuzzer"] = Fuzzer(place / str(os.getpid()))
     _ASKED.extend(techniques)
 
 
 def _entry(seed: int) -> Entry:
-    return _entry_of(_HERE["bench"], seed, _ASKED)
+    return _entry_of(_HERE["fuzzer"], seed, _ASKED)
 
 
-def _entry_of(bench: Bench, seed: int, techniques: Sequence[str]) -> Entry:
+def _entry_of(fuzzer: Fuzzer, seed: int, techniques: Sequence[str]) -> Entry:
     """Judge a case and return what is kept of it."""
-    result = bench.judge(draw(seed, bench.goods, techniques))
+    result = fuzzer.judge(draw(seed, fuzzer.goods, techniques))
     case, bad, verdicts = result.case, result.bad, result.verdicts()
     return Entry(
-        seed, bench.goods[case.good].technique, case.kind, case.good, case.mutation,
+        seed, fuzzer.goods[case.good].technique, case.kind, case.good, case.mutation,
         verdicts.get("alone"), verdicts.get("group"), bad.why if bad else "",
     )  # fmt: skip

@@ -18,6 +18,7 @@ from deamat.core.config import Config, load_config
 from deamat.core.errors import ConfigError
 from deamat.core.ledger import Failure, FileEntry, Provenance
 from deamat.core.slug import Spellings
+from deamat.core.technique import AnyTechnique
 from deamat.run.boundary import attempt
 from deamat.run.build_cache import BuildCache, key_of
 from deamat.run.compare import compare
@@ -94,12 +95,7 @@ def process(
         run = RunContext(
             folders, config, stages, surveys, cache, pool, progress, dry, failures=broken
         )
-        groups: list[Group] = []
-        measured: list[Measured] = []
-        for technique in in_order(TECHNIQUES):
-            mine = compare(measure(technique, run), run)
-            measured += mine
-            groups += summarise(technique, mine, run)
+        measured, groups = measure_all(TECHNIQUES, run)
         files = _account(surveys, measured)
         provenance = _provenance(config, stages, hashes)
         if dry:
@@ -117,6 +113,19 @@ def process(
     state.remember_inputs(seen, inputs)
     state.note("published", listing(place))
     return document
+
+
+def measure_all(
+    techniques: Mapping[str, AnyTechnique], run: RunContext
+) -> tuple[list[Measured], list[Group]]:
+    """Measure, compare and summarise all specimens, technique by technique in order of need."""
+    measured: list[Measured] = []
+    groups: list[Group] = []
+    for technique in in_order(techniques):
+        mine = compare(measure(technique, run), run)
+        measured += mine
+        groups += summarise(technique, mine, run)
+    return measured, groups
 
 
 def look_at_raw(

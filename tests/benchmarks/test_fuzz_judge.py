@@ -10,12 +10,12 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.fuzz.bench import Bench
 from benchmarks.fuzz.cases import MUTATIONS, Case, draw
+from benchmarks.fuzz.fuzzer import Fuzzer
 from benchmarks.fuzz.good import good_campaigns
 from benchmarks.fuzz.judge import Judged, judge
-from benchmarks.fuzz.laboratory import Hang, Outcome, within
 from benchmarks.fuzz.page import page, silent_per_10000
+from benchmarks.fuzz.runner import Hang, Outcome, within
 from benchmarks.fuzz.study import Entry, study
 from deamat.core.flags import Flag
 from deamat.core.kinds import Condition
@@ -120,8 +120,8 @@ def test_mutations_have_names_of_their_own() -> None:
 def test_a_case_is_run_as_a_campaign_is(
     tmp_path: Path, good: str, mutation: str, verdict: str
 ) -> None:
-    with Bench(tmp_path) as bench:
-        assert set(bench.judge(Case(good, mutation, 3)).verdicts().values()) == {verdict}
+    with Fuzzer(tmp_path) as fuzzer:
+        assert set(fuzzer.judge(Case(good, mutation, 3)).verdicts().values()) == {verdict}
 
 
 def test_a_study_goes_on_where_it_was_stopped(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Where cases are run: every good campaign in a laboratory of its own."""
+"""Runs cases: every good campaign in a folder of its own."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Self
 from benchmarks.fuzz.cases import Case
 from benchmarks.fuzz.good import ROOT, Good, good_campaigns, of_twin
 from benchmarks.fuzz.judge import BAD, Judged, Verdict, judge
-from benchmarks.fuzz.laboratory import BUDGET_s, Files, Laboratory, Outcome
+from benchmarks.fuzz.runner import BUDGET_s, Files, Outcome, Runner
 from deamat.core.config import load_config
 from deamat.techniques import TECHNIQUES
 
@@ -47,8 +47,8 @@ class Result:
         return {name: judged.verdict for name, judged in both.items() if judged is not None}
 
 
-class Bench:
-    """The good campaigns, each in its laboratory, with what is said of them; a context manager.
+class Fuzzer:
+    """The good campaigns, each with its runner, and what is said of them; a context manager.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ class Bench:
     def __init__(self, place: Path) -> None:
         self._place = place
         self._config = load_config(ROOT / "config", {t.key: t.config for t in TECHNIQUES.values()})
-        self._laboratories: dict[str, Laboratory] = {}
+        self._runners: dict[str, Runner] = {}
         self._said: dict[str, tuple[Outcome, Outcome]] = {}
 
     def __enter__(self) -> Self:
@@ -70,8 +70,8 @@ class Bench:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        for laboratory in self._laboratories.values():
-            laboratory.close()
+        for runner in self._runners.values():
+            runner.close()
 
     @cached_property
     def goods(self) -> Mapping[str, Good]:
@@ -87,20 +87,20 @@ class Bench:
 
     def _outcome(self, name: str, given: Files) -> Outcome:
         budget_s = BUDGET_s * max(1, len(given.files))
-        return self.laboratory(name).outcome(given, budget_s)
+        return self.runner(name).outcome(given, budget_s)
 
-    def laboratory(self, name: str) -> Laboratory:
-        """The laboratory of a good campaign, in which what its technique needs is known."""
-        if name not in self._laboratories:
+    def runner(self, name: str) -> Runner:
+        """The runner of a good campaign, in which what its technique needs is known."""
+        if name not in self._runners:
             good = self.goods[name]
-            found = Laboratory(self._place / str(len(self._laboratories)), self._config)
-            self._laboratories[name] = found
+            found = Runner(self._place / str(len(self._runners)), self._config)
+            self._runners[name] = found
             if good.technique in _NEEDED:
                 technique, key = _NEEDED[good.technique]
                 before = found.outcome(of_twin(technique, good.material).group, 10.0 * BUDGET_s)
                 found.records[good.material] = [r for r in before.records if r.key == key]
                 found.laws[good.material] = list(before.laws)
-        return self._laboratories[name]
+        return self._runners[name]
 
     def judge(self, case: Case, *, group: bool = True) -> Result:
         """Run a case alone and, if asked for, among its siblings.

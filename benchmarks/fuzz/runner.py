@@ -9,6 +9,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from types import FrameType
 
@@ -16,10 +17,11 @@ from deamat.core.config import Config
 from deamat.core.fingerprint import Fingerprint
 from deamat.core.ledger import Failure
 from deamat.core.records import Law, PropertyRecord
-from deamat.run.book import Book
+from deamat.run.boundary import attempt
+from deamat.run.build_cache import BuildCache
 from deamat.run.folders import Folders, Input
-from deamat.run.measure import Bench, measure, summarise
-from deamat.run.process import look_at_raw
+from deamat.run.measure import RunContext
+from deamat.run.process import look_at_raw, measure_all
 from deamat.run.stages import Stages
 from deamat.run.state import State
 from deamat.run.workers import Workers
@@ -68,7 +70,7 @@ class Outcome:
     hang: bool = False
 
 
-class Laboratory:
+class Runner:
     """A raw folder with one campaign, and what it takes to run it.
 
     Specimens whose file and row are as they were are not measured again: the account of the run
@@ -105,25 +107,27 @@ class Laboratory:
         try:
             with within(budget_s), warnings.catch_warnings():
                 warnings.simplefilter("error")  # what a library mutters ends on somebody's screen
-                return self._run(given.technique, contents)
+                return self._run(contents)
         except Hang:
             return Outcome(hang=True)
 
-    def _run(self, technique: str, contents: Mapping[str, bytes]) -> Outcome:
+    def _run(self, contents: Mapping[str, bytes]) -> Outcome:
         inputs = {
             f"raw/{path}": Input(len(data), hashlib.sha256(data).hexdigest())
             for path, data in contents.items()
         }
         surveys, broken, _ = look_at_raw(self.folders, inputs, self.config)
-        bench = Bench(
-            self.folders, self.config, self._stages, surveys, Book(self._state), Workers(1),
+        run = RunContext(
+            self.folders, self.config, self._stages, surveys, BuildCache(self._state), Workers(1),
             lambda *_: None, dry=False,
             records={(CAMPAIGN, m): list(r) for m, r in self.records.items()},
             laws={(CAMPAIGN, m): list(laws) for m, laws in self.laws.items()},
             failures=broken,
         )  # fmt: skip
-        measured = measure(TECHNIQUES[technique], bench)
-        groups = summarise(TECHNIQUES[technique], measured, bench)
+        done = attempt("run", CAMPAIGN, [], partial(measure_all, TECHNIQUES, run))
+        if isinstance(done, Failure):
+            return Outcome(failures=(*run.failures, done))
+        measured, groups = done
         summaries = [group.summary for group in groups if group.summary is not None]
         refusals = [r for s in summaries for r in s.refusals]
         errors = [m.reduced.error for m in measured if m.reduced and m.reduced.error]
@@ -135,7 +139,7 @@ class Laboratory:
             tuple(law for s in summaries for law in s.laws),
             tuple(dict.fromkeys((r.key, r.reason) for r in refusals)),
             (*map(str, bad), *map(str, errors)),
-            tuple(bench.failures),
+            tuple(run.failures),
         )
 
     def _write(self, contents: Mapping[str, bytes]) -> None:
