@@ -95,6 +95,21 @@ def soro(c: Columns, width_m: float, thickness_m: float, gauge_length_m: float) 
     return _rows(head, columns, ";", "\r\n").encode()
 
 
+def plain_german(c: Columns) -> bytes:
+    """Write a curve as a plain table of a German program, in Windows' encoding."""
+    head = [f"Bemerkung;{REMARK}", "Prüfzeit / s;Weg in mm;Kraft [N]"]
+    columns = [(c["time_s"], ".3f"), (1e3 * c["displacement_m"], ".5f"), (c["force_N"], ".5f")]
+    rows = _rows([], columns, ";", "\r\n").replace(".", ",")
+    return (_rows(head, [], ";", "\r\n") + rows).encode("cp1252")
+
+
+def plain_bars(c: Columns) -> bytes:
+    """Write a curve as a plain table between bars, its units in the labels."""
+    head = [f"Remark|{REMARK}", "time_s|displacement_mm|force_N"]
+    columns = [(c["time_s"], ".3f"), (1e3 * c["displacement_m"], ".5f"), (c["force_N"], ".5f")]
+    return _rows(head, columns, "|").encode()
+
+
 def e4980a(c: Columns) -> bytes:
     """Write a sweep as a log of a Keysight E4980A."""
     head = [

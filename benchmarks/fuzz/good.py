@@ -124,6 +124,8 @@ def _in_other_forms() -> Iterator[Good]:
             "soro", pulled,
             lambda c, n: forms.soro(c, n("width_mm"), n("thickness_um"), n("gauge_length_mm")),
         ),
+        ("plain-german", pressed, lambda c, _: forms.plain_german(c)),
+        ("plain-bars", pulled, lambda c, _: forms.plain_bars(c)),
         ("e4980a", film, lambda c, _: forms.e4980a(c)),
     ):  # fmt: skip
         yield _rewritten(good, reader, write)

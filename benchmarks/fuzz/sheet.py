@@ -15,7 +15,7 @@ _QUOTED = r',(?=")'
 _SEPARATOR = {
     "antonpaar": ";", "bluehill": _QUOTED, "flow_tab": "\t", "hysitron": "\t", "mark10": "\t",
     "mts": "\t", "ndj8s": r"[\t#]|\s+", "nexygen": "\t", "rheocompass": "\t", "schmid": "\t",
-    "soro": ";",
+    "plain": r"[;|]", "soro": ";",
 }  # fmt: skip
 _DECIMAL_COMMA = ("antonpaar", "mts", "rheocompass")
 _UNITS_BELOW_LABELS = {"antonpaar": 1, "bluehill": 1, "rheocompass": 2, "schmid": 1, "zwick": 1}
@@ -52,10 +52,11 @@ class Sheet:
         """The file's bytes."""
         return "".join(line + self.newline for line in self.lines).encode(self.encoding, "replace")
 
-    @property
+    @cached_property
     def decimal(self) -> str:
         """Decimal mark of its numbers."""
-        return "," if self.reader in _DECIMAL_COMMA else "."
+        comma = self.reader in _DECIMAL_COMMA or "." not in "".join(self.rows)
+        return "," if comma else "."
 
     @property
     def units(self) -> int | None:

@@ -15,7 +15,7 @@ from deamat.formats.quantities import meaning
 from deamat.formats.rawfile import ROW_STARTS, Head
 
 _LABEL_WITH_UNIT = re.compile(r"(.*\S)\s*(?:\(([^()]*)\)|\[([^\[\]]*)\])")
-_CELL = {mark: re.compile(rf'(?:^|{mark}) *("[^"]*"|[^{mark}]*)') for mark in ",;\t"}
+_CELL = {mark: re.compile(rf'(?:^|{re.escape(mark)}) *("[^"]*"|[^{mark}]*)') for mark in ",;\t|"}
 _UNIT = re.compile(r"\((.*)\)|\[(.*)\]")
 
 

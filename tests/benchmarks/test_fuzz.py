@@ -10,7 +10,7 @@ import pytest
 from benchmarks.fuzz.cases import draw
 from benchmarks.fuzz.fuzzer import Fuzzer
 from benchmarks.fuzz.page import DAMAGED
-from deamat.formats import FORMATS
+from deamat.formats import FORMATS, plain
 from deamat.techniques import TECHNIQUES
 
 EVERY_FOURTH = 4  # is judged among its siblings too
@@ -37,7 +37,7 @@ def test_the_study_has_3000_files_of_every_technique_and_reader(fuzzer: Fuzzer) 
     assert sum(count for count, *_ in STUDY.values()) == 3000
     assert STUDY.keys() == TECHNIQUES.keys()
     readers = {good.sheets[0].reader for good in fuzzer.goods.values() if good.files}
-    assert readers == {form.name for form in FORMATS}
+    assert readers == {form.name for form in (*FORMATS, plain.FORMAT)}
 
 
 @pytest.mark.parametrize("technique", STUDY)

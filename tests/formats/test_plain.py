@@ -71,6 +71,12 @@ def test_headings_of_every_kind(header: str) -> None:
     assert is_curve(read(table(header)))
 
 
+def test_quoted_notes_above_bars_are_kept() -> None:
+    recording = read('"Remark"|"a|b"\n' + table("time_s,displacement_mm,force_N", "|"))
+    assert is_curve(recording)
+    assert recording.metadata["Remark"] == "a|b"
+
+
 @pytest.mark.parametrize("separator", [";", "\t", "|"])
 @pytest.mark.parametrize("decimal", [",", "."])
 @pytest.mark.parametrize("quote", ["", '"'])
