@@ -9,6 +9,8 @@ from deamat.core.flags import Flag
 from deamat.core.records import Recording, Specimen
 from deamat.estimators.rows import Sketch, has_noise, sketch
 
+_SET = frozenset(("time_s", "frequency_Hz", "shear_rate_per_s"))  # by the instrument
+
 
 @dataclass(frozen=True, slots=True)
 class Seen:
@@ -36,5 +38,5 @@ def look(recording: Recording, specimen: Specimen) -> Seen:
 
 
 def holds_noise(recording: Recording) -> bool:
-    """Say whether any column but time scatters: no two tests then write the same rows."""
-    return any(has_noise(column) for name, column in recording.columns.items() if name != "time_s")
+    """Say whether any column but what is set scatters: no two tests then write the same rows."""
+    return any(has_noise(column) for name, column in recording.columns.items() if name not in _SET)

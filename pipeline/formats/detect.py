@@ -56,7 +56,7 @@ def detect(file: RawFile) -> Format:
             hint="name the format in the register's `format` column",
         )
     try:
-        plain.understood(file)
+        return plain.form_of(file)
     except RawFileError as error:
         raise RawFileError(
             file.path,
@@ -65,7 +65,6 @@ def detect(file: RawFile) -> Format:
             value=error.value or file.head[(error.line or 1) - 1 :][:1][0][:60],
             hint=error.hint or _HINT,
         ) from error
-    return plain.FORMAT
 
 
 def _is_for(form: Format, file: RawFile) -> bool:
@@ -75,10 +74,9 @@ def _is_for(form: Format, file: RawFile) -> bool:
 def _plain_or(form: Format, file: RawFile) -> Format:
     """A testing machine's table in another technique's register means that technique's words."""
     try:
-        plain.understood(file)
+        return plain.form_of(file)
     except RawFileError:
         return form
-    return plain.FORMAT
 
 
 def _refuse_binary(file: RawFile) -> None:

@@ -31,7 +31,7 @@ Every line above the labels; `columns not used` lists the labels of the others.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from deamat.core.errors import RawFileError
 from deamat.core.records import Recording
@@ -58,6 +58,23 @@ class Text:
 def _read(file: RawFile) -> Recording:
     text, choice = understood(file)
     return recording_of(file, text.lines, text.encoding, choice, ended=text.ended)
+
+
+def form_of(file: RawFile) -> Format:
+    """Return the form with what was understood of a file, so that it is not looked for twice.
+
+    Raises
+    ------
+    RawFileError : see `understood`
+    """
+    text, choice = understood(file)
+
+    def read(again: RawFile) -> Recording:
+        if again is not file:
+            return _read(again)
+        return recording_of(file, text.lines, text.encoding, choice, ended=text.ended)
+
+    return replace(FORMAT, read=read)
 
 
 def understood(file: RawFile) -> tuple[Text, Choice]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 import numpy as np
@@ -19,6 +20,8 @@ from deamat.formats.rawfile import RawFile
 from deamat.formats.structure import fields
 from deamat.formats.table import row_flags
 
+# what no comma between thousands can be: behind a leading zero, or before one or two digits
+_FRACTION = re.compile(r"(?<![0-9])0[0-9]*,|,[0-9]{1,2}(?![0-9])|,[0-9]{4}")
 _ONE_RATE = 1.05  # rates that differ by less are one setting
 
 
@@ -77,7 +80,9 @@ def recording_of(
 
 
 def _insist_on_frequencies(file: RawFile, columns: dict[str, FloatArray], choice: Choice) -> None:
-    wrong = np.flatnonzero(columns.get("frequency_Hz", np.ones(1)) <= 0.0)
+    if "frequency_Hz" not in columns:
+        return
+    wrong = np.flatnonzero(columns["frequency_Hz"] <= 0.0)
     if wrong.size:
         raise RawFileError(
             file.path, "a frequency must be above zero", choice.heading.first + 1 + int(wrong[0]),
@@ -128,9 +133,12 @@ def _fast(rows: Sequence[str], choice: Choice) -> FloatArray | None:
     width = rows[0].count(separator) + 1
     if not block.isascii() or width != len(choice.heading.labels) or separator == "|":
         return None
+    decimal = "."
     if separator != "," and "," in block:
-        return None
-    return parse(block.encode(), width, Dialect(separator))
+        if "." in block or not _FRACTION.search(block):
+            return None
+        decimal = ","
+    return parse(block.encode(), width, Dialect(separator, decimal))
 
 
 def _split(

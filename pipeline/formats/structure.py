@@ -20,6 +20,7 @@ from deamat.formats.cells import looks_numeric
 SEPARATORS = ("\t", ";", ",", "|")
 _HEADER_LINES = 1000  # no results block above a table is longer
 _ROWS = 32  # of numbers in a row are the table, and no further heading is looked for
+_TEXT = re.compile(r"[^0-9+\-.,;\t|\" eE]")  # what no row of plain numbers holds
 _BRACKETED = re.compile(r"\((.*)\)|\[(.*)\]|<(.*)>")
 _ENDING = re.compile(r"(.*\S)\s*(?:\(([^()]*)\)|\[([^\[\]]*)\]|<([^<>]*)>)")
 _SLASH = re.compile(r"(.*\S)\s+(?:/|in|,)\s*(\S+(?: s)?)")
@@ -57,16 +58,21 @@ def fields(line: str, separator: str) -> list[str]:
 
 def headings(lines: Sequence[str]) -> Iterator[Heading]:
     """Propose every place where a table may start, for every separator."""
+    head = "\n".join(lines[:_HEADER_LINES])
     for separator in SEPARATORS:
+        if separator not in head:
+            continue
         rows = 0
         for at, line in enumerate(lines[:_HEADER_LINES]):
-            names = _trimmed(fields(line, separator)) if separator in line else []
+            rows = 0 if _TEXT.search(line) else rows + 1
+            if rows > _ROWS:
+                break
+            if rows or separator not in line:
+                continue
+            names = _trimmed(fields(line, separator))
             if len([name for name in names if name]) < 2:
                 continue
             numbers = sum(map(looks_numeric, names))
-            rows = rows + 1 if numbers == len(names) else 0
-            if rows > _ROWS:
-                break
             yield from _headings_at(lines, at, separator, names, numbers)
 
 
