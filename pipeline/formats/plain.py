@@ -8,7 +8,8 @@ label and unit (`vocabulary.toml`), else the file is refused with all that is mi
 Format
 ------
 Perhaps lines of notes, results or keys, one row of labels, perhaps a row of units, then rows of
-fields parted by tabs, semicolons, commas or bars. Units stand in the row of units or in the labels
+fields parted by tabs, semicolons, commas or bars, or aligned by blanks (at least two between
+labels). Units stand in the row of units or in the labels
 (`Load (N)`, `Load [N]`, `load_N`, `Load / N`, `F in N`). The decimal mark is the one under which
 every cell that is used is a number; where both marks fit and mean different numbers the file is
 refused. UTF-8, UTF-16 with its mark, or the one of cp1252, cp1250, GB18030 and Shift-JIS in which
@@ -30,6 +31,7 @@ Every line above the labels; `columns not used` lists the labels of the others.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -43,6 +45,8 @@ from deamat.formats.structure import Heading, fields, headings, looks_numeric_gr
 from deamat.formats.vocabulary import ASKED
 
 _ENCODINGS = ("cp1252", "cp1250", "gb18030", "cp932")  # of texts that are not UTF-8
+_BLANK, _BLANKS = re.compile(" +"), re.compile(" {2,}")
+_NUMBERS = re.compile(r"[0-9+\-.,eE ]+")
 _FEW_ROWS = 4  # of a block of results above the table; more of them are a table of their own
 
 
@@ -92,6 +96,11 @@ def understood(file: RawFile) -> tuple[Text, Choice]:
             complete.append((text, choice))
         if near is not None and (nearest is None or near.labelled > nearest.labelled):
             nearest = near
+    for text in () if complete else texts(file):
+        aligned = _aligned(text)
+        choice = None if aligned is None else complete_in(file, aligned)[0]
+        if aligned is not None and choice is not None:
+            complete.append((aligned, choice))
     if complete:
         return max(complete, key=lambda pair: (pair[1].by_label, pair[1].labelled))
     raise refused(file, nearest)
@@ -125,6 +134,17 @@ def texts(file: RawFile) -> list[Text]:
         except UnicodeDecodeError:
             continue
     return found
+
+
+def _aligned(text: Text) -> Text | None:
+    """Part columns that are aligned by blanks with bars: words by two of them, numbers by one."""
+    if any(mark in line for line in text.lines for mark in "\t;|"):
+        return None
+    lines = [
+        "|".join((_BLANK if _NUMBERS.fullmatch(line) else _BLANKS).split(line.strip(" ")))
+        for line in text.lines
+    ]
+    return replace(text, lines=lines)
 
 
 def _text(file: RawFile, text: str, encoding: str) -> Text:
@@ -171,11 +191,15 @@ def _rank(choice: Choice) -> tuple[bool, int, int]:
 
 
 def _refuse_rows_above(file: RawFile, text: Text, heading: Heading) -> None:
+    """Refuse a run above the labels; a few rows are a block of results."""
+    rows = 0
     for at, line in enumerate(text.lines[: heading.names]):
         cells = fields(line, heading.separator) if heading.separator in line else []
-        if len(cells) >= 2 and all(map(looks_numeric_grouped, cells)):
+        numeric = len(cells) >= 2 and all(map(looks_numeric_grouped, cells))
+        rows = rows + 1 if numeric else 0
+        if rows > _FEW_ROWS:
             raise RawFileError(
-                file.path, "a row of numbers above the labels", at + 1, value=line,
+                file.path, "rows of numbers above the labels", at + 1, value=line,
                 hint="one file holds one run: export each run to a file of its own",
             )  # fmt: skip
 

@@ -85,10 +85,13 @@ def _headings_at(
             first = _first_row(lines, below + 1, separator, len(names))
             if first is not None:
                 yield Heading(separator, at, first, *_with_units(names, units))
-    if not numbers and all(names):
+    if numbers:
+        return
+    labels, written = zip(*map(split_label, names), strict=True)
+    if all(names) or sum(map(bool, written)) > 1:  # a running number may have no label
         first = _first_row(lines, at + 1, separator, len(names))
         if first is not None:
-            yield Heading(separator, at, first, *zip(*map(split_label, names), strict=True))
+            yield Heading(separator, at, first, labels, written)
 
 
 def _trimmed(cells: list[str]) -> list[str]:

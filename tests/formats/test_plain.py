@@ -195,6 +195,31 @@ def test_a_cut_file_is_refused() -> None:
     assert "no data rows" in refused("Reading,Time (s),Travel (mm),Load (N)\n")
 
 
+def test_results_above_and_a_running_number_without_label() -> None:
+    results = '"Fmax";"dL"\nN;mm\n1234,5;0,5\n1300,1;0,6\n\n'
+    rows = "".join(f"{i};{t};{mm};{n}\n".replace(".", ",") for i, (t, mm, n) in enumerate(ROWS))
+    recording = read(results + ";Zeit (s);Weg (mm);Kraft (N)\n" + rows)
+    assert is_curve(recording)
+    assert recording.source.first_line == 7
+
+
+def test_a_run_without_its_labels_above_is_refused() -> None:
+    run = "1,0,0.1,0.5\n" * 6
+    text = run + "Reading,Time (s),Travel (mm),Load (N)\n" + run
+    assert "line 5: no format recognises this file: rows of numbers above" in refused(text)
+
+
+@pytest.mark.parametrize("decimal", [".", ","])
+def test_columns_aligned_by_blanks(decimal: str) -> None:
+    rows = "".join(f"{t:8.2f} {mm:10.3f} {n:12.2f}\n" for t, mm, n in ROWS)
+    head = "Test of a strip, nothing more\n  Time (s)   Crosshead travel (mm)    Load (N)\n"
+    text = (head + rows).replace(".", decimal)
+    recording = read(text.replace("Crosshead travel", "Travel"))
+    assert is_curve(recording)
+    assert (recording.source.first_line, recording.source.last_line) == (3, 5)
+    assert "the file seems cut" in refused(text[: text.rindex(" ")] + "\n")
+
+
 def test_two_tables_are_refused() -> None:
     first = "Reading,Time (s),Travel (mm),Load (N)\n" + "1,0,0.1,0.5\n" * 6
     other = "Reading,Time (s),Stroke (mm),Force (N)\n" + "1,0,0.1,0.5\n" * 6
