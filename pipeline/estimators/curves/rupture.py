@@ -137,7 +137,8 @@ def count_loadings(strain: FloatArray, last: int) -> int:
     if (x[1:] >= x[:-1]).all():  # the usual test, at a hundredth of the cost
         return 1
     size = 0.05 * float(np.ptp(x))
-    loadings, low, high, rising = 1, float(x[0]), float(x[0]), True
+    loadings, rising = 1, True
+    low = high = float(x[0])
     for value in x.tolist():
         if rising:
             high = max(high, value)

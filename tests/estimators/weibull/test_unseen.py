@@ -7,7 +7,7 @@ import pytest
 
 from deamat.estimators.weibull.fit import fit, quantile
 from deamat.estimators.weibull.goodness import curved, goodness_of_fit
-from deamat.estimators.weibull.unseen import _departure, unseen
+from deamat.estimators.weibull.unseen import _departure, _fitted, unseen
 from tests.estimators.weibull.samples import CABLE_I, simulated
 
 
@@ -19,6 +19,19 @@ def test_the_tests_find_the_stated_departure_with_the_stated_power(sign: int) ->
     x = 70.0 * np.exp((hazard**c - 1.0) / c / 9.0)
     seen = [goodness_of_fit(v).p_value < 0.05 or curved(v).p_value < 0.005 for v in x]
     assert np.mean(seen) == pytest.approx(0.8, abs=0.06)
+
+
+def test_the_curvature_alone_has_the_stated_power() -> None:
+    c, power = _departure((0,) * 30, -1, 0.8, 1e-6, 0.2)
+    assert power == 0.8
+    hazard = np.random.default_rng(75).standard_exponential((400, 30))
+    x = 70.0 * np.exp((hazard**c - 1.0) / c / 9.0)
+    assert np.mean([curved(v).p_value < 0.2 for v in x]) == pytest.approx(0.8, abs=0.05)
+
+
+def test_no_sample_of_the_most_curved_form_underflows() -> None:
+    hazard, scale, shape = _fitted((0,) * 5, -0.7)
+    assert (hazard.shape, scale.shape, shape.shape) == ((400, 5), (400,), (400,))
 
 
 def test_the_stated_departure_is_how_far_the_quantile_of_the_fit_is_off() -> None:
