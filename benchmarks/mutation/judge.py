@@ -15,7 +15,7 @@ from benchmarks.mutation.copies import Copy, compile_tests, digest
 from benchmarks.mutation.mutants import Mutant
 from benchmarks.mutation.tests_of import Hits
 
-LEAST_CPU_S, SLOWER = 60.0, 5.0  # a mutant may take this long, or its tests' time so many times
+LEAST_CPU_S, SLOWER = 30.0, 3.0  # a mutant may take this long, or its tests' time so many times
 
 
 @dataclass(frozen=True)

@@ -30,11 +30,13 @@ def test_workers_end_with_a_parent_that_was_killed(folders: Folders, blow: signa
     command = [sys.executable, "-m", "tests.run.killed"]
     places = [str(p) for p in (folders.raw, folders.config, folders.processed)]
     with subprocess.Popen([*command, *places], cwd=ROOT, stdout=subprocess.PIPE, text=True) as job:
-        assert job.stdout is not None
-        assert {job.stdout.readline()[:7] for _ in range(2)} == {"drawing"}  # two workers at work
-        with pytest.raises(ConfigError, match="another run is working"):
-            run(folders)
-        job.send_signal(blow)
+        try:
+            assert job.stdout is not None
+            assert {job.stdout.readline()[:7] for _ in range(2)} == {"drawing"}  # two at work
+            with pytest.raises(ConfigError, match="another run is working"):
+                run(folders)
+        finally:  # it never ends by itself
+            job.send_signal(blow)
         # The workers have inherited the pipe: it ends when the last of them does.
         job.communicate(timeout=_PATIENCE_S)
     assert run(folders)["exit_code"] == 0
