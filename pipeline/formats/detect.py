@@ -18,6 +18,7 @@ _HINT = (
     "the format in the register's `format` column"
 )
 _AS_TEXT = "export the data as text (CSV) and register that file"
+_COMPRESSED = ("a compressed file", "unpack it and register what is inside")
 # how files start that are no text, and what to do with them
 _BINARY = {
     b"\xd0\xcf\x11\xe0": ("an Excel workbook of the old form (.xls)", "save it as .xlsx or CSV"),
@@ -25,7 +26,8 @@ _BINARY = {
     b"TDSm": ("a LabVIEW measurement in binary form (.tdms)", _AS_TEXT),
     b"\x89HDF": ("an HDF5 file", _AS_TEXT),
     b"%PDF": ("a PDF document", _AS_TEXT),
-    b"\x1f\x8b": ("a compressed file", "unpack it and register what is inside"),
+    b"\x1f\x8b\x08\x00": _COMPRESSED,
+    b"\x1f\x8b\x08\x08": _COMPRESSED,
 }
 _DELIMITERS = {"tab": "\t", "semicolon": ";", "comma": ","}
 
@@ -38,9 +40,12 @@ def detect(file: RawFile) -> Format:
     RawFileError : none does, or several do; says what was found, and what is missing of the
         nearest table
     """
-    if workbook.is_workbook(file.data):
-        return workbook.FORMAT
-    _refuse_binary(file)
+    start = file.data[:4]
+    if start in _BINARY:
+        if workbook.is_workbook(file.data):
+            return workbook.FORMAT
+        what, hint = _BINARY[start]
+        raise RawFileError(file.path, f"no format recognises this file: it is {what}", hint=hint)
     matching = file.once(_recognising)
     if len(matching) == 1:
         return matching[0] if _is_for(matching[0], file) else _plain_or(matching[0], file)
@@ -77,14 +82,6 @@ def _plain_or(form: Format, file: RawFile) -> Format:
         return plain.form_of(file)
     except RawFileError:
         return form
-
-
-def _refuse_binary(file: RawFile) -> None:
-    for start, (what, hint) in _BINARY.items():
-        if file.data.startswith(start):
-            raise RawFileError(
-                file.path, f"no format recognises this file: it is {what}", hint=hint
-            )
 
 
 def _recognising(head: Head) -> tuple[Format, ...]:
