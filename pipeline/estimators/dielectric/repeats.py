@@ -30,12 +30,18 @@ def sweep_numbers(frequency_Hz: FloatArray) -> NDArray[np.intp]:
         return numbers  # one way only
     if np.diff(np.sort(frequency_Hz)).min() > _SAME * float(frequency_Hz.max()):
         return numbers
-    way, number = 0.0, 0
+    way, number, repeated = 0.0, 0, 0
     for i, sign in enumerate(signs.tolist(), start=1):
         if sign and way and sign != way:
             number, way = number + 1, 0.0
+            if signs[i - 2] == 0.0 and repeated == 1:
+                # the only frequency read twice is the one where it turns: once on either way
+                numbers[i - 1], way = number, sign
+            repeated = 0
         elif sign:
             way = sign
+        else:
+            repeated += 1
         numbers[i] = number
     return numbers if _meet(frequency_Hz, numbers) else np.zeros_like(numbers)
 

@@ -60,10 +60,12 @@ def card_point(spectrum: Spectrum, config: PermittivityConfig) -> CardPoint:
     """
     target, flags = _asked_for(spectrum, config)
     spectrum, found = first_sweep(spectrum, target, config)
-    if np.unique(spectrum.frequency_Hz).size < config.min_points:
+    frequencies = np.unique(spectrum.frequency_Hz).size
+    if frequencies < config.min_points:
         raise FitRefused(
-            f"{np.unique(spectrum.frequency_Hz).size} frequencies in the first of several sweeps, "
-            f"{config.min_points} are needed"
+            f"a sweep over {frequencies} frequencies, {config.min_points} are needed (min_points "
+            "of [permittivity] in config/methods.toml)",
+            {"points": frequencies, "points_needed": config.min_points},
         )
     smoothed = smooth(spectrum, target, config)
     spectrum = smoothed.spectrum

@@ -16,6 +16,8 @@ from deamat.estimators.dielectric.repeats import same_frequency, spread, sweep_n
         pytest.param([10, 100, 10, 100], [0, 0, 1, 1], id="again"),
         pytest.param([100, 10, 100, 10], [0, 0, 1, 1], id="again, downwards"),
         pytest.param([10, 100, 1000, 100, 10], [0, 0, 0, 1, 1], id="up and down"),
+        pytest.param([10, 100, 1000, 1000, 100, 10], [0, 0, 0, 1, 1, 1], id="turned at the top"),
+        pytest.param([10, 10, 100, 100, 10, 10], [0, 0, 0, 0, 1, 1], id="twice each, up and down"),
         pytest.param([10, 10, 10, 100, 100], [0, 0, 0, 0, 0], id="repeats"),
         pytest.param([1000, 10, 100, 5000], [0, 0, 0, 0], id="out of order, no frequency twice"),
     ],

@@ -230,3 +230,9 @@ def test_a_loss_below_zero_is_refused() -> None:
     records, reasons = losses(-0.001, -0.002)
     assert records == []
     assert reasons[0].startswith("the loss comes out below zero, -0.0015 +- 0.013")
+
+
+def test_readings_at_one_frequency_are_no_sweep() -> None:
+    assert refused(measure(np.ones(6), np.full(6, 1000.0))).startswith(
+        "a sweep over 1 frequencies, 5 are needed (min_points of [permittivity]"
+    )
