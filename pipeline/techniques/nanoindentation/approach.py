@@ -126,9 +126,9 @@ def _refuse_straight(depth: FloatArray, force: FloatArray, signal_to_noise: floa
     if rise > signal_to_noise * noise:
         raise FitRefused(straight_from_the_first(rise, span), details)
     raise FitRefused(
-        f"no contact, or a specimen too soft to feel: over {in_um(span)} of approach the load "
-        f"keeps to a straight line within {in_uN(bend)}, its noise being {in_uN(noise)}; find the "
-        "surface again, or use a larger tip",
+        "no contact, a specimen too soft to feel, or a record that starts in contact: over "
+        f"{in_um(span)} of approach the load keeps to a straight line within {in_uN(bend)}, its "
+        f"noise being {in_uN(noise)}; find the surface again, or use a larger tip",
         details,
     )
 

@@ -70,9 +70,9 @@ def test_a_specimen_without_file_or_depth_is_refused() -> None:
 def test_an_indent_into_air_is_refused() -> None:
     depth = SPHERE_CURVE[0]
     assert reason(reduce(SPHERE, noisy((depth, 0.3 * depth), 1e-7))) == (
-        "no contact, or a specimen too soft to feel: over 5.2 um of approach the load keeps to a "
-        "straight line within 0.101 uN, its noise being 0.101 uN; find the surface again, or use "
-        "a larger tip"
+        "no contact, a specimen too soft to feel, or a record that starts in contact: over 5.2 um of "
+        "approach the load keeps to a straight line within 0.101 uN, its noise being 0.101 uN; find "
+        "the surface again, or use a larger tip"
     )
 
 
