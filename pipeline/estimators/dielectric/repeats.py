@@ -56,9 +56,9 @@ def _meet(frequency_Hz: FloatArray, numbers: NDArray[np.intp]) -> bool:
 
 def same_frequency(frequency_Hz: FloatArray) -> NDArray[np.intp]:
     """Number the distinct frequencies of a rising list, from 0, shape (n,)."""
-    apart = np.diff(frequency_Hz) > _SAME * frequency_Hz[1:]
-    result: NDArray[np.intp] = np.concatenate([[0], np.cumsum(apart)])
-    return result
+    group = np.zeros(frequency_Hz.size, dtype=np.intp)
+    np.cumsum(frequency_Hz[1:] * (1.0 - _SAME) > frequency_Hz[:-1], out=group[1:])
+    return group
 
 
 def spread(values: FloatArray, group: NDArray[np.intp]) -> FloatArray:

@@ -101,7 +101,7 @@ def _unexplained(x: FloatArray, y: FloatArray, floor: float) -> FloatArray | Non
     around = min(_AROUND, gaps - 1)
     if around < _FEWEST:
         return None
-    dx, dy = np.diff(x), np.diff(y)
+    dx, dy = x[1:] - x[:-1], y[1:] - y[:-1]
     slope = dy / dx
     if not _suspicious(dx, slope, floor):
         return None
@@ -118,9 +118,10 @@ def _unexplained(x: FloatArray, y: FloatArray, floor: float) -> FloatArray | Non
 
 def _suspicious(dx: FloatArray, slope: FloatArray, floor: float) -> bool:
     """Tell quickly whether any slope differs from both of its neighbours by half the floor."""
-    turn = np.abs(np.diff(slope))
-    least = np.minimum(np.append(turn, turn[-1]), np.append(turn[0], turn))
-    return bool((least * dx > 0.5 * floor).any())
+    turn = np.empty(slope.size + 1)
+    turn[1:-1] = np.abs(slope[1:] - slope[:-1])
+    turn[0], turn[-1] = turn[1], turn[-2]
+    return bool((np.minimum(turn[1:], turn[:-1]) * dx > 0.5 * floor).any())
 
 
 def _others(gaps: int, around: int) -> NDArray[np.intp]:

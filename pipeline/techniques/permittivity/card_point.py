@@ -60,7 +60,7 @@ def card_point(spectrum: Spectrum, config: PermittivityConfig) -> CardPoint:
     """
     target, flags = _asked_for(spectrum, config)
     spectrum, found = first_sweep(spectrum, target, config)
-    frequencies = np.unique(spectrum.frequency_Hz).size
+    frequencies = int(np.count_nonzero(np.diff(spectrum.frequency_Hz))) + 1
     if frequencies < config.min_points:
         raise FitRefused(
             f"a sweep over {frequencies} frequencies, {config.min_points} are needed (min_points "

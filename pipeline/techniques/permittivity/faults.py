@@ -181,6 +181,8 @@ def _within(value: float, bounds: tuple[float, float]) -> float:
 
 def _means(values: FloatArray, group: np.ndarray[tuple[int], np.dtype[np.intp]]) -> FloatArray:
     """Average the values of each group, shape (groups,)."""
+    if int(group[-1]) + 1 == group.size:
+        return values
     result: FloatArray = np.bincount(group, values) / np.bincount(group)
     return result
 

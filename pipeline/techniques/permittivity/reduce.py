@@ -46,12 +46,14 @@ class Reading:
     ----------
     point : the card's frequency in the spectrum, and what the sweep's faults do there
     permittivity, loss : of the film at every point of the spectrum, shape (n,) each `[1]`
+    resistance : in series with the film, with its standard error `[ohm]`, where there are points
     """
 
     film: Film
     point: CardPoint
     permittivity: FloatArray
     loss: FloatArray
+    resistance: tuple[float, float] | None
     config: PermittivityConfig
 
     @property
@@ -124,7 +126,7 @@ def reduce(
     try:
         point = card_point(spectrum, config)
         curve = _curve(point.spectrum, film, config)
-        reading = Reading(film, point, curve.relative_permittivity, curve.loss_tangent, config)
+        reading = _read(film, point, curve, config)
         dependence = _dependence(reading)
     except FitRefused as error:
         refusals = tuple(refusal(specimen, key, error, at) for key in (PERMITTIVITY, LOSS))
@@ -143,6 +145,12 @@ def reduce(
         replace(curve, dependence=dependence),
         file.source,
     )
+
+
+def _read(film: Film, point: CardPoint, curve: FilmSpectrum, config: PermittivityConfig) -> Reading:
+    sound = point.spectrum
+    resistance = series_resistance(sound.frequency_Hz, sound.series_capacitance_F, sound.loss)
+    return Reading(film, point, curve.relative_permittivity, curve.loss_tangent, resistance, config)
 
 
 def _curve(spectrum: Spectrum, film: Film, config: PermittivityConfig) -> FilmSpectrum:
@@ -189,7 +197,7 @@ def _permittivity(
         diagnostics={
             **_film_diagnostics(reading, value),
             **_dependence_diagnostics(dependence),
-            **_resistance_diagnostics(spectrum),
+            **_resistance_diagnostics(reading.resistance),
         },
         flags=flags,
     )
@@ -272,21 +280,16 @@ def _dependence_diagnostics(found: Dependence) -> dict[str, Detail]:
     }
 
 
-def _resistance_diagnostics(spectrum: Spectrum) -> dict[str, Detail]:
-    found = _resistance(spectrum)
+def _resistance_diagnostics(found: tuple[float, float] | None) -> dict[str, Detail]:
     if found is None:
         return {}
     return {"series_resistance_ohm": found[0], "u_series_resistance_ohm": found[1]}
 
 
-def _resistance(spectrum: Spectrum) -> tuple[float, float] | None:
-    return series_resistance(spectrum.frequency_Hz, spectrum.series_capacitance_F, spectrum.loss)
-
-
 def _flags(reading: Reading, level_said: bool) -> tuple[Flag, ...]:
     """Everything a reader of both values must know."""
     config, where = reading.config, reading.where
-    flags = reading.point.found.flags + _resistance_flags(reading.spectrum, config)
+    flags = reading.point.found.flags + _resistance_flags(reading)
     if where.interpolated:
         low, high = reading.spectrum.frequency_Hz[where.indices[[0, -1]]]
         flags += (
@@ -320,12 +323,12 @@ def _edge_flags(reading: Reading) -> tuple[Flag, ...]:
     )
 
 
-def _resistance_flags(spectrum: Spectrum, config: PermittivityConfig) -> tuple[Flag, ...]:
+def _resistance_flags(reading: Reading) -> tuple[Flag, ...]:
     """Flag a loss that rises in proportion to f at the top of the sweep while C_p falls."""
-    found = _resistance(spectrum)
-    if found is None:
+    config, spectrum = reading.config, reading.spectrum
+    if reading.resistance is None:
         return ()
-    resistance, u = found
+    resistance, u = reading.resistance
     top, series = float(spectrum.frequency_Hz[-1]), float(spectrum.series_capacitance_F[-1])
     added = 2.0 * math.pi * top * series * resistance
     if not (added > config.series_loss_flag and resistance > _RESISTANCE_TOLD * u):
