@@ -107,21 +107,26 @@ def _fit(x: FloatArray, c: FloatArray) -> tuple[float, float, float]:
     return float(found[2]) / level, u / level, float(_EXPONENTS[best])
 
 
-def conducts(frequency_Hz: FloatArray, loss: FloatArray, at_Hz: float) -> bool:
-    """Tell whether most of a loss is a part that falls as 1/f over the decade above it.
+def conducted(frequency_Hz: FloatArray, loss: FloatArray, at_Hz: float) -> float:
+    """Return the part of a loss that falls as 1/f over the decade above, if it is most of it `[1]`.
 
     Parameters
     ----------
     frequency_Hz : rising, shape (n,)
     loss : D, shape (n,)
     at_Hz : where the decade begins
+
+    Returns
+    -------
+    zero where it is less than 60 % of the loss, or where the loss does not follow 1/f
     """
     used = (frequency_Hz > 0.99 * at_Hz) & (frequency_Hz < 10.1 * at_Hz)
     if np.count_nonzero(used) < 3:
-        return False
+        return 0.0
     x, y = at_Hz / frequency_Hz[used], loss[used]
     dx, dy = x - x.mean(), y - y.mean()
     along, squares = float(dx @ dy), float(dx @ dx)
     if along <= _MOST * squares * float(y[0]):
-        return False
-    return along**2 > _CLOSE * squares * float(dy @ dy)
+        return 0.0
+    follows = along**2 > _CLOSE * squares * float(dy @ dy)
+    return along / squares if follows else 0.0

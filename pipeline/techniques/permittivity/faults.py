@@ -11,7 +11,7 @@ from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
 from deamat.core.quantity import Contribution
 from deamat.core.records import Flag
-from deamat.estimators.dielectric.low_frequency import Rise, conducts, polarisation
+from deamat.estimators.dielectric.low_frequency import Rise, conducted, polarisation
 from deamat.estimators.dielectric.repeats import same_frequency, spread
 from deamat.estimators.dielectric.smoothness import NONE, Jumps, jumps
 from deamat.techniques.permittivity.config import PermittivityConfig
@@ -249,14 +249,20 @@ def polarisation_told(rise: Rise) -> str:
     )
 
 
-def conduction_flags(spectrum: Spectrum, target_Hz: float, loss: float) -> tuple[Flag, ...]:
-    """Flag a loss that is that of a current through the film."""
-    if loss < _LOSS_BY_CONDUCTION or not conducts(spectrum.frequency_Hz, spectrum.loss, target_Hz):
+def conduction_flags(spectrum: Spectrum, target_Hz: float, u_loss: float) -> tuple[Flag, ...]:
+    """Flag a loss that is that of a current through the film, told from the meter's own error.
+
+    Parameters
+    ----------
+    u_loss : standard uncertainty of the loss by the meter `[1]`
+    """
+    part = conducted(spectrum.frequency_Hz, spectrum.loss, target_Hz)
+    if part < max(_LOSS_BY_CONDUCTION, 3.0 * u_loss):
         return ()
     return (
         Flag(
             "conduction",
-            f"the loss rises as 1/f towards {target_Hz:g} Hz: it is that of a current through the "
-            "film or along its surface, not of its polarisation",
+            f"{part:.2g} of the loss falls as 1/f from {target_Hz:g} Hz on: it is that of a "
+            "current through the film or along its surface, not of its polarisation",
         ),
     )

@@ -208,8 +208,8 @@ def _loss(reading: Reading, flags: tuple[Flag, ...]) -> MeasuredValue:
     if reading.point.no_loss:
         raise FitRefused(reading.point.no_loss)
     value = reading.where.of(reading.loss)
-    flags += conduction_flags(spectrum, reading.point.frequency_Hz, value)
     u = reading.where.of(spectrum.limit * (1.0 + np.abs(spectrum.loss))) / _LIMIT_TO_SIGMA
+    flags += conduction_flags(spectrum, reading.point.frequency_Hz, u)
     if abs(value) < 2.0 * u:
         flags += (
             Flag(

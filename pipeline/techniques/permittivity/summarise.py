@@ -24,42 +24,47 @@ def summarise(
 ) -> Summary:
     """Average the films and state how the permittivity depends on frequency."""
     summary = summarise_by_mean(measurements, "permittivity", YIELDS)
-    negative = [r for r in summary.records if r.key == LOSS and r.quantity.value < 0.0]
-    return replace(
-        summary,
-        refusals=summary.refusals + tuple(map(_refused_below_zero, negative)),
-        records=tuple(
-            _with_dependence(record, _films_of(record, measurements), context.config)
-            if record.key == PERMITTIVITY
-            else _not_below_zero(record)
-            for record in summary.records
-            if record not in negative
-        ),
-    )
+    records, refusals = [], list(summary.refusals)
+    for record in summary.records:
+        if record.key == PERMITTIVITY:
+            films = _films_of(record, measurements)
+            records.append(_with_dependence(record, films, context.config))
+        elif (loss := _not_below_zero(record)) is not None:
+            records.append(loss)
+        else:
+            refusals.append(_refused_below_zero(record))
+    return replace(summary, records=tuple(records), refusals=tuple(refusals))
 
 
 def _refused_below_zero(loss: PropertyRecord) -> Refusal:
     value, u = loss.quantity.value, loss.quantity.standard_uncertainty
     return Refusal(
         LOSS,
-        f"the loss comes out below zero, {value:.2g} +- {2.0 * u:.2g}: the meter does not tell it; "
-        "trim open and short, or check the meter's phase against a capacitor without loss",
+        f"the loss comes out below zero, {value:.2g} +- {2.0 * u:.2g}: the meter turns the phase; "
+        "trim open and short, or check it against a capacitor without loss",
         loss.material,
         loss.campaign,
         conditions=loss.conditions,
     )
 
 
-def _not_below_zero(loss: PropertyRecord) -> PropertyRecord:
-    """End the interval of a loss at zero, below which no film is.
+def _not_below_zero(loss: PropertyRecord) -> PropertyRecord | None:
+    """End value and interval of a loss at zero, below which no film is.
 
     The interval is otherwise the symmetric one, on no log scale: what is not told from zero has
-    no order of magnitude.
+    no order of magnitude. None where all of it lies below zero.
     """
     quantity = loss.quantity
     values = [origin.value for origin in loss.origins]
     low, high = mean_with_shared(values, quantity.u_independent, quantity.u_shared).ci95
-    return loss if low > 0.0 else replace(loss, ci95=(0.0, high))
+    if high <= 0.0:
+        return None
+    if low > 0.0:
+        return loss
+    value = replace(quantity, value=max(quantity.value, 0.0))
+    # a film below zero, within what the meter tells, is no implausible one
+    flags = tuple(flag for flag in loss.flags if flag.name != "implausible")
+    return replace(loss, quantity=value, ci95=(0.0, high), flags=flags)
 
 
 def _films_of(

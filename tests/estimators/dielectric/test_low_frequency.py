@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from deamat.estimators.dielectric.low_frequency import conducts, polarisation
+from deamat.estimators.dielectric.low_frequency import conducted, polarisation
 
 F = np.logspace(1, 4, 31)
 FILM = 1e-10 * (1 - 0.004 * np.log10(F / 10))
@@ -53,7 +53,7 @@ def test_five_points_tell_a_strong_rise() -> None:
 
 
 def test_most_of_a_loss_by_conduction_falls_as_one_over_f() -> None:
-    assert conducts(F, 0.003 + 0.05 * (10 / F), 10.0)
-    assert not conducts(F, 0.05 + 0.003 * (10 / F), 10.0)
-    assert not conducts(F, 0.05 * (10 / F) ** 0.3, 10.0)
-    assert not conducts(F[::10], 0.05 * (10 / F[::10]), 10.0)
+    assert conducted(F, 0.003 + 0.05 * (10 / F), 10.0) == pytest.approx(0.05)
+    assert conducted(F, 0.05 + 0.003 * (10 / F), 10.0) == 0.0
+    assert conducted(F, 0.05 * (10 / F) ** 0.3, 10.0) == 0.0
+    assert conducted(F[::10], 0.05 * (10 / F[::10]), 10.0) == 0.0
