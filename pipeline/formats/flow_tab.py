@@ -7,8 +7,8 @@ Named `flow_tab`; detected by a tab-separated first line with `Shear Rate` and `
 Format
 ------
 `Point No.<TAB>Shear Rate [1/s]<TAB>Shear Stress [Pa]<TAB>Viscosity [mPa.s]...`, then rows with
-decimal points; CRLF or LF. A file that leaves the units out is read in 1/s and Pa.s, and flagged.
-Units with a middle dot or a degree sign may be in Mac OS Roman, as some exports were.
+decimal points; CRLF or LF. A rate or viscosity without its unit is refused: nothing tells Pa.s from
+mPa.s. Units with a middle dot or a degree sign may be in Mac OS Roman, as some exports were.
 
 Columns
 -------
@@ -37,11 +37,7 @@ from deamat.formats.quantities import meaning
 from deamat.formats.rawfile import RawFile
 from deamat.formats.table import read_table, required
 
-_READER = Reader(
-    "flow_tab",
-    Dialect("\t"),
-    {"point no.": "1", "shear rate": "1/s", "viscosity": "Pa.s"},
-)
+_READER = Reader("flow_tab", Dialect("\t"), {"point no.": "1"})
 # Middle dot and degree sign of Mac OS Roman, as they look when read as Latin-1.
 _MAC_ROMAN = str.maketrans({"\u00e1": ".", "\u00a1": "\u00b0"})
 

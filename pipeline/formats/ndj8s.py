@@ -17,7 +17,7 @@ Columns
 `viscosity_Pas [Pa.s]`, `line [1]` (of the file), the time as the stamps are written: `utc_s [s]`
 (with an offset) or `local_clock_s [s]` (without), both since 1970, or `time_of_day_s [s]` since
 midnight, and `rotor [1]`, `speed_rpm [rpm]`, `torque [1]` (of full scale), `temperature_K [K]`; the
-last only where every reading has it.
+last where at least half of the readings have it, between them for the others.
 
 Uncertainties
 -------------

@@ -26,6 +26,7 @@ _SET_BACK_S = 7200.0
 OVER_RANGE = re.compile(r"E{2,}(?:\.E+)?|OVER|OL", re.IGNORECASE)
 BELOW_ZERO = re.compile(r"-{2,}(?:\.-+)?")
 NO_PROBE = re.compile(r"-+\.-+|-{2,}|")
+_TEMPERATURE = "temperature_K"
 _TIME_OF_DAY = re.compile(r"([01][0-9]|2[0-3]):([0-5][0-9]):([0-5][0-9](?:\.[0-9]+)?)")
 
 
@@ -86,11 +87,25 @@ def recording(
         columns[name] = np.array([readings[i].numbers[name] for i in kept])
     columns["line"] = np.array([float(readings[i].line) for i in kept])
     partly = {n for i in kept for n in readings[i].numbers} - set(names)
+    if _TEMPERATURE in partly and (probe := _between(readings, kept, columns["line"])) is not None:
+        columns[_TEMPERATURE] = probe
+        partly.remove(_TEMPERATURE)
     flags = [*_left_out(readings), *_partly(partly)]
     source = Source(
         file.path, file.sha256, readings[0].line, readings[-1].line, file.encoding, reader
     )
     return Recording(columns, metadata, units, source, tuple(flags))
+
+
+def _between(
+    readings: Sequence[Reading], kept: Sequence[int], lines: FloatArray
+) -> FloatArray | None:
+    """Temperature at every reading where at least half of them have it: it moves slowly."""
+    has = [i for i, at in enumerate(kept) if _TEMPERATURE in readings[at].numbers]
+    if 2 * len(has) < len(kept):
+        return None
+    known = np.array([readings[kept[i]].numbers[_TEMPERATURE] for i in has])
+    return np.asarray(np.interp(lines, lines[has], known))
 
 
 def lines_text(lines: Iterable[float]) -> str:

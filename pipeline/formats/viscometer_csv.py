@@ -20,7 +20,8 @@ Columns
 `viscosity_Pas [Pa.s]`, `line [1]` (of the file), the time as the stamps are written: `utc_s [s]`
 (with an offset) or `local_clock_s [s]` (without), both since 1970, or `time_of_day_s [s]` since
 midnight (these also where a start is stamped), or `time_s [s]` since mixing; and `rotor [1]`,
-`speed_rpm [rpm]`, `torque [1]` (of full scale), `temperature_K [K]` where every reading has them.
+`speed_rpm [rpm]`, `torque [1]` (of full scale) where every reading has them, and
+`temperature_K [K]` where at least half of the readings have it, between them for the others.
 
 Uncertainties
 -------------

@@ -52,12 +52,18 @@ def test_serial_lines_come_out_in_si_with_over_range_left_out_by_line() -> None:
     assert found.columns["speed_rpm"].tolist() == [30, 30, 12]
     assert found.columns["line"].tolist() == [2, 3, 5]
     assert np.diff(found.columns["local_clock_s"]).tolist() == [900, 40560]
-    assert [str(flag) for flag in found.flags] == [
-        "over-range: 1 readings left out: lines 4",
-        "not-in-every-reading: temperature_K is missing in some lines and was not used",
-    ]
+    assert [str(flag) for flag in found.flags] == ["over-range: 1 readings left out: lines 4"]
+    assert found.columns["temperature_K"] == pytest.approx([295.15] * 3)
     assert found.metadata == {"line 1": "synthetic, made for tests"}
     assert (found.source.first_line, found.source.last_line) == (2, 5)
+
+
+def test_a_probe_that_half_of_the_readings_lack_is_not_used() -> None:
+    found = read(changed(LOG, 2, LOG[1].replace("22.0", "-.-")))
+    assert "temperature_K" not in found.columns
+    assert "not-in-every-reading: temperature_K is missing in some lines and was not used" in {
+        str(flag) for flag in found.flags
+    }
 
 
 def test_the_quoted_line_of_the_instrument_is_read() -> None:
