@@ -2,6 +2,8 @@
 
 `choose` asks the data: the cheapest law that no costlier one clearly beats. `choose_for` asks a
 question as well: of the laws up to that one, the cheapest whose expected error is tolerable.
+`averaged` answers with all laws that the data do not tell apart: its interval holds although a law
+was chosen.
 """
 
 from __future__ import annotations
@@ -13,7 +15,10 @@ from itertools import pairwise
 from typing import Generic, TypeVar
 
 import numpy as np
+from numpy.typing import ArrayLike
+from scipy.special import stdtrit
 
+from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused, OutOfRange
 from deamat.estimators.least_squares.fit import Fit
 
@@ -21,6 +26,7 @@ from deamat.estimators.least_squares.fit import Fit
 # exp(6 / 2) = 20 times better. Of straight lines of 8 to 720 points, with orders up to 5 on offer,
 # 0.3 to 1.6 % are then given a higher order (1 to 10 % with the customary 2).
 DECISIVE = 6.0
+NORMAL = 1.959963984540054  # half width of a 95 % interval in standard deviations
 _EPSILON = float(np.finfo(np.float64).eps)
 
 AnyFit = TypeVar("AnyFit", bound=Fit)
@@ -53,12 +59,14 @@ class Choice(Generic[AnyFit]):
     name, fit : the candidate chosen
     tried : all candidates
     reason : one sentence with the numbers that decided
+    scored : name and fit of every candidate that has a score, the cheapest first
     """
 
     name: str
     fit: AnyFit
     tried: tuple[Tried, ...]
     reason: str
+    scored: tuple[tuple[str, AnyFit], ...] = ()
 
 
 def aicc(fit: Fit) -> float:
@@ -149,7 +157,79 @@ def choose(candidates: Sequence[tuple[str, Callable[[], AnyFit]]]) -> Choice[Any
     lowest = min(score for score, _, _ in scored)
     index = next(i for i, (score, _, _) in enumerate(scored) if score <= lowest + DECISIVE)
     _, name, fit = scored[index]
-    return Choice(name, fit, tuple(tried), _reason([(s, n) for s, n, _ in scored], index))
+    return Choice(
+        name,
+        fit,
+        tuple(tried),
+        _reason([(s, n) for s, n, _ in scored], index),
+        tuple((n, f) for _, n, f in scored),
+    )
+
+
+def akaike_weights(fits: Sequence[Fit], handicaps: ArrayLike) -> FloatArray:
+    r"""Say how well the data support each law, shape (k,); the sum is 1.
+
+    $w_k \propto \exp(-(n \ln \chi_k^2 + 2 p_k + h_k) / 2)$. Without the small-sample term of
+    `aicc`: that favours stiff laws, whose bias no interval of theirs shows.
+
+    Parameters
+    ----------
+    fits : of the same data with the same errors and an estimated error scale
+    handicaps : h, shape (k,): 0, or what a law must be better supported by
+
+    Raises
+    ------
+    FitRefused : no fits, or of different data
+
+    Source: K. P. Burnham, D. R. Anderson, Model Selection and Multimodel Inference (Springer
+    2002), 2.9.
+    """
+    if not fits:
+        raise FitRefused("there is no law to weigh")
+    _comparable(fits)
+    n = len(fits[0].y)
+    rounding = math.fsum(np.square(_EPSILON * fits[0].y / fits[0].sigma))
+    squares = [max(math.fsum(np.square(f.weighted_residuals)), rounding) for f in fits]
+    if min(squares) == 0:
+        raise FitRefused("data that are all zero say nothing about a law")
+    counts = np.array([float(f.parameter_count) for f in fits])
+    score = n * np.log(np.array(squares)) + 2.0 * counts + np.asarray(handicaps, dtype=np.float64)
+    weights = np.exp(-0.5 * (score - score.min()))
+    return np.asarray(weights / weights.sum())
+
+
+def averaged(
+    values: ArrayLike,
+    u: ArrayLike,
+    dof: ArrayLike,
+    weights: ArrayLike,
+    about: float | None = None,
+) -> tuple[float, float]:
+    r"""Average the answers of laws that the data do not tell apart.
+
+    $$ v = \sum_k w_k v_k, \qquad u^2 = \sum_k w_k \left(u_k^2 \left(\frac{t_{0.975}(\nu_k)}
+    {1.96}\right)^2 + (v_k - v)^2\right) $$
+
+    so that $v \pm 1.96\,u$ holds in 95 %.
+
+    Parameters
+    ----------
+    values, u, dof : answers, their standard uncertainties and degrees of freedom, shape (k,)
+    weights : shape (k,); need not sum to 1
+    about : an answer to give in place of v, with the uncertainty that it then has
+
+    Returns
+    -------
+    v, u
+
+    Source: K. P. Burnham, D. R. Anderson, Model Selection and Multimodel Inference (Springer
+    2002), 4.3.2 and 6.12; D. Fletcher, Model Averaging (Springer 2018), 3.2.
+    """
+    v, own, freedom, w = (np.asarray(a, dtype=np.float64) for a in (values, u, dof, weights))
+    w = w / w.sum()
+    middle = float(w @ v) if about is None else about
+    wide = own * stdtrit(np.minimum(freedom, 1e6), 0.975) / NORMAL
+    return middle, math.sqrt(float(w @ (np.square(wide) + np.square(v - middle))))
 
 
 def _predicted(fit: Fit) -> float | None:

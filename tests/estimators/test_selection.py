@@ -13,6 +13,8 @@ from deamat.estimators.selection import (
     DECISIVE,
     Enough,
     aicc,
+    akaike_weights,
+    averaged,
     choose,
     choose_for,
     leave_one_out_sd,
@@ -243,3 +245,48 @@ def test_what_cannot_be_asked_is_refused() -> None:
     assert str(refusal.value) == (
         "candidate laws must come with the cheapest first, not at costs [2.0, 1.0]"
     )
+
+
+def test_weights_follow_squares_and_counts_of_parameters() -> None:
+    rng = np.random.default_rng(31)
+    y = LINE + 0.05 * rng.normal(size=len(HOURS))
+    fits = [make() for _, make in orders(y, 3)]
+    weights = akaike_weights(fits, np.zeros(4))
+    assert weights.sum() == pytest.approx(1.0)
+    chi = [float(np.square(fit.residuals).sum()) for fit in fits]
+    by_hand = (chi[2] / chi[1]) ** (len(y) / 2) * np.exp(3 - 2)
+    assert weights[1] / weights[2] == pytest.approx(by_hand, rel=1e-9)
+    handicapped = akaike_weights(fits, [0.0, 0.0, 3.0, 0.0])
+    assert handicapped[1] / handicapped[2] == pytest.approx(by_hand * np.exp(1.5), rel=1e-9)
+    with pytest.raises(FitRefused, match="there is no law to weigh"):
+        akaike_weights([], [])
+
+
+def test_an_average_holds_the_spread_of_its_laws_and_their_few_readings() -> None:
+    value, u = averaged([1.0, 3.0], [0.0, 0.0], [1e9, 1e9], [3.0, 1.0])
+    assert (value, u) == pytest.approx((1.5, np.sqrt(0.75 * 0.25 + 0.25 * 2.25)))
+    value, u = averaged([2.0], [1.0], [7.0], [1.0])
+    assert (value, u) == pytest.approx((2.0, 2.3646 / 1.95996), rel=1e-4)
+    value, u = averaged([1.0, 3.0], [0.0, 0.0], [1e9, 1e9], [1.0, 1.0], about=1.0)
+    assert (value, u) == pytest.approx((1.0, np.sqrt(2.0)))
+
+
+def test_intervals_hold_after_the_choice_of_an_order() -> None:
+    """Twelve hourly readings of a cubic with 3 % noise: the law chosen alone holds in 63-91 %."""
+    rng = np.random.default_rng(32)
+    hours, asked = np.arange(1.0, 13.0), np.array([1.0, 3.0, 6.0, 9.0, 12.0])
+    cubic = np.polynomial.polynomial.Polynomial([4.36, 1.2, -0.13, 0.0146])
+    hits = np.zeros(5)
+    for _ in range(300):
+        y = cubic(hours) * (1.0 + 0.03 * rng.normal(size=12))
+        fits = [make() for _, make in orders(y, 5, 0.03 * y, x=hours)]
+        weights = akaike_weights(fits, np.zeros(6))
+        for i, hour in enumerate(asked):
+            each = [fit(hour) for fit in fits]
+            value, u = averaged(
+                [float(v) for v, _ in each], [float(s) for _, s in each],
+                [fit.dof for fit in fits], weights,
+            )  # fmt: skip
+            hits[i] += abs(value - cubic(hour)) <= 1.96 * u
+    assert np.all(hits >= 0.91 * 300), hits  # 93 to 97 % within three standard errors
+    assert np.all(hits <= 0.99 * 300), hits
