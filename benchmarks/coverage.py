@@ -77,9 +77,17 @@ class Answer:
 
 @cache
 def _config() -> Config:
-    """Read the configuration of the repository, and ask for the time to a viscosity too."""
+    """Read the configuration of the repository, and ask for the time to a viscosity too.
+
+    The twin's liquids are power laws at all shear rates: n is as certain beyond those measured.
+    """
     config = load_config(ROOT / "config", {t.key: t.config for t in TECHNIQUES.values()})
-    liquids = config.methods["viscosity"].model_copy(update={"limit_viscosity_Pas": LIMIT_Pas})
+    asked = {
+        "limit_viscosity_Pas": LIMIT_Pas,
+        "extrapolation_decades": 4.0,
+        "u_index_beyond": 0.0,
+    }
+    liquids = config.methods["viscosity"].model_copy(update=asked)
     return replace(config, methods={**config.methods, "viscosity": liquids})
 
 
@@ -222,6 +230,9 @@ How to read it:
   intervals of a shape or a low quantile are lopsided, and so are their middles.
 - "(law)" is a fitted law at twelve times over its range, at both ends of its shear rates.
   `time_to_viscosity_limit` is asked for {limit:g} Pa.s.
+- `viscosity_at_printing_rate` is extrapolated, and the twin's liquids are power laws at every shear
+  rate: what n may be off by beyond those measured (`u_index_beyond`) is left out of its intervals,
+  and it is asked 3.2 powers of ten beyond, where a card refuses it (`extrapolation_decades`).
 - `handling_time` lies between the last clean and the first defective line, or is a lower bound:
   such an interval holds the truth because of how it is made, which shows nothing. That of
   `viscosity_at_handling_time` starts at the law's lower 95 % limit there: the twin's truth is the

@@ -26,6 +26,7 @@ _LAST_S, _EVERY_S = 24.0 * SECONDS_PER_HOUR, 1.0
 _OF_LIQUIDS = frozenset(
     {
         "viscosity",
+        "viscosity_at_printing_rate",
         "viscosity_doubling_time",
         "time_to_viscosity_limit",
         "flow_consistency",
@@ -94,7 +95,7 @@ def liquid_at(law: TrueViscosity, key: str, time_s: float, rate_per_s: float) ->
     MissingProperty : another key
     """
     hours = time_s / SECONDS_PER_HOUR
-    if key == "viscosity":
+    if key in ("viscosity", "viscosity_at_printing_rate"):
         return viscosity_at(law, time_s, rate_per_s)
     k = float(np.polynomial.polynomial.polyval(hours, law.consistency))
     n = float(np.polynomial.polynomial.polyval(hours, law.index))

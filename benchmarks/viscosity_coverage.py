@@ -28,7 +28,7 @@ from deamat.twin.viscosity import (
     simulate_viscosity,
 )
 
-CONTEXT = Context(ViscosityConfig(), VISCOMETER, {})
+CONTEXT = Context(ViscosityConfig(u_index_beyond=0.0, extrapolation_decades=4.0), VISCOMETER, {})
 _CHECKED_PER_LAW = 12
 
 

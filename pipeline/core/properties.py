@@ -67,6 +67,13 @@ _TABLE = (
     PropertyKey("weibull_shape", "beta", "1", (0.5, 100.0), "IEC 62539"),
     PropertyKey("weibull_shape_unbiased", "beta_u", "1", (0.5, 100.0), "Ross 1996"),
     PropertyKey("viscosity", "mu", "Pa.s", (1e-3, 1e5), "ASTM D2196"),
+    PropertyKey(
+        "viscosity_at_printing_rate",
+        "mu_p",
+        "Pa.s",
+        (1e-3, 1e5),
+        "at the shear rate in the nozzle, as the configuration declares it",
+    ),
     PropertyKey("viscosity_doubling_time", "t_2", "s", (60.0, 1e7), "from the viscosity law"),
     PropertyKey("time_to_viscosity_limit", "t_lim", "s", (60.0, 1e7), "from the viscosity law"),
     PropertyKey(

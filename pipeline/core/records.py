@@ -349,6 +349,11 @@ class Law:
         "Nominal shear rate (1/s) over speed (rpm) of the viscometer. Left out for a form without "
         "a rate.",
     ] = None
+    relative_scatter: Annotated[
+        float | None,
+        "Root mean square of residual over law, of the readings that it was fitted to. Left out "
+        "where it was not kept.",
+    ] = None
     conditions: Mapping[str, Condition]
     campaign: Annotated[str, ID, Mark.IN_FRONT]
     method: Annotated[str, SAID, "Estimator and range in words."]
@@ -398,6 +403,20 @@ class Law:
         dof = 1e6 if self.degrees_of_freedom is None else min(self.degrees_of_freedom, 1e6)
         half = float(stdtrit(dof, 0.975)) * found.standard_uncertainty
         return found.value - half, found.value + half
+
+    def prediction95(self, x: float, rate_per_s: float | None = None) -> tuple[float, float]:
+        """Give the range that holds 95 % of single readings at x `[unit]`.
+
+        Raises
+        ------
+        OutOfRange : as when the law is asked, or its scatter was not kept
+        """
+        if self.relative_scatter is None:
+            raise OutOfRange(f"what readings scatter about {self.key} of {self.material} is lost")
+        low, high = self.ci95(x, rate_per_s)
+        middle = 0.5 * (low + high)
+        half = math.hypot(0.5 * (high - low), 1.96 * self.relative_scatter * middle)
+        return middle - half, middle + half
 
     def _inside(self, x: float, rate_per_s: float | None) -> None:
         low, high = self.valid

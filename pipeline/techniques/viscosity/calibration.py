@@ -44,8 +44,10 @@ def settled(readings: Readings, degree: int) -> Settled:
 
     Source: JCGM 101:2008, 6.4 (prior knowledge as an observation).
     """
-    full_scales = np.unique(readings.calibration_Pas)
-    if len(full_scales) < 2 or len(readings) < degree + 4:
+    one_setting = np.all(readings.rotor == readings.rotor[0]) and np.all(
+        readings.speed_rpm == readings.speed_rpm[0]
+    )
+    if one_setting or not readings.of_full_scale or len(readings) < degree + 4:
         return Settled(readings, 0.0, 1.0)
     t = readings.time_s
     x = 2.0 * (t - t.min()) / (t.max() - t.min()) - 1.0

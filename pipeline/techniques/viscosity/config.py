@@ -10,12 +10,21 @@ from pydantic import Field, model_validator
 from deamat.core.instruments import Declared
 
 VISCOSITY = "viscosity"
+AT_PRINTING_RATE = "viscosity_at_printing_rate"
 DOUBLING = "viscosity_doubling_time"
 LIMIT = "time_to_viscosity_limit"
 CONSISTENCY = "flow_consistency"
 CONSISTENCY_WIDE_CUP = "flow_consistency_wide_cup"
 INDEX = "flow_index"
-YIELDS = (VISCOSITY, DOUBLING, LIMIT, CONSISTENCY, INDEX, CONSISTENCY_WIDE_CUP)
+YIELDS = (
+    VISCOSITY,
+    AT_PRINTING_RATE,
+    DOUBLING,
+    LIMIT,
+    CONSISTENCY,
+    INDEX,
+    CONSISTENCY_WIDE_CUP,
+)
 # Refused by name where a run gives nothing; the others are only asked of some liquids.
 ALWAYS = (VISCOSITY, DOUBLING)
 
@@ -32,6 +41,14 @@ _PAPER = RateFactor(
     source="Sikulskyi et al. 2022: about 0.27 1/s at 3 rpm (rotor not said; the wall of a cylinder "
     "in a wide cup would give 0.63)",
 )
+
+
+class ActivationEnergy(Declared):
+    """Activation energy of flow of the laboratory's liquids, and where it is from."""
+
+    J_per_mol: float = Field(gt=0, description="E in exp(E / R T)")
+    u_J_per_mol: float = Field(ge=0, description="its standard uncertainty")
+    source: str = Field(min_length=3, description="who says so")
 
 
 class ViscosityConfig(Declared):
@@ -62,6 +79,45 @@ class ViscosityConfig(Declared):
     )
     reading_noise: float = Field(
         default=0.03, gt=0, description="fraction of the reading, where a file states no full scale"
+    )
+    reading_calibration: float = Field(
+        default=0.03,
+        ge=0,
+        description="standard uncertainty of the instrument that all readings share, fraction of "
+        "the reading, where a file states no full scale",
+    )
+    temperature_drift_K: float = Field(
+        default=0.5, gt=0, description="change of temperature within a run that is let pass"
+    )
+    temperature_tolerance_K: float = Field(
+        default=1.0, gt=0, description="difference between runs or sweeps at one temperature"
+    )
+    activation_energy: ActivationEnergy | None = Field(
+        default=None, description="of flow; None fits it where the temperature moves to and fro"
+    )
+    printing_rate_per_s: float | None = Field(
+        default=95.0, gt=0, description="shear rate at which liquids are printed; None asks nothing"
+    )
+    printing_rate_source: str = Field(
+        default="Sikulskyi et al. 2022, section 3.2, estimated for Sylgard 182 while it is printed",
+        min_length=3,
+        description="who says so",
+    )
+    extrapolation_decades: float = Field(
+        default=3.0,
+        ge=0,
+        description="how far beyond the measured shear rates a power law is trusted, flagged",
+    )
+    u_index_beyond: float = Field(
+        default=0.05,
+        ge=0,
+        description="standard uncertainty of n beyond the measured shear rates, for a power law "
+        "that bends there",
+    )
+    max_sweep_drift: float = Field(
+        default=0.1,
+        gt=0,
+        description="difference between flow curves in one file beyond which they are no repeats",
     )
     stated_times_s: tuple[float, ...] = Field(
         default=(3600.0, 21600.0, 43200.0), description="times since mixing that are recorded"

@@ -1,7 +1,13 @@
-"""Flow curves: viscosity against rate at one time, as a power law where the data support one."""
+"""Flow curves: viscosity against rate at one time, as a power law where the data support one.
+
+Several sweeps in one file are parted: those at other temperatures are answered apart, repeats at
+one temperature get a level each, and what the levels differ by is in the uncertainty.
+"""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,15 +17,29 @@ from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
 from deamat.core.properties import property_key
 from deamat.core.quantity import Contribution, Quantity
-from deamat.core.records import Condition, Flag, MeasuredValue, Recording, Specimen
+from deamat.core.records import Condition, Flag, MeasuredValue, Recording, Refusal, Specimen
+from deamat.estimators.least_squares.lack_of_fit import residual_runs
 from deamat.estimators.least_squares.linear import LinearFit, fit_linear
-from deamat.estimators.selection import choose
+from deamat.estimators.mean import coverage_factor
+from deamat.estimators.selection import NORMAL, choose
 from deamat.formats.flow_samples import SEPARATOR
 from deamat.formats.viscometer import lines_text
-from deamat.techniques.viscosity.config import CONSISTENCY, INDEX, VISCOSITY
+from deamat.techniques.shared.outcome import refusal
+from deamat.techniques.viscosity.config import (
+    AT_PRINTING_RATE,
+    CONSISTENCY,
+    INDEX,
+    VISCOSITY,
+    ViscosityConfig,
+)
+from deamat.techniques.viscosity.flow_sweeps import levels, parted
+from deamat.techniques.viscosity.printing import extrapolation, too_far
+from deamat.techniques.viscosity.readings import tenth_of_degree
 
 _MIN_READINGS = 5
-_TEMPERATURE_SPREAD_K = 1.0
+_FALSE_ALARMS = 0.002
+# Sweeps differ if their levels do by more than this, and by so many of their standard errors.
+_DRIFT, _DRIFT_SDS = 0.01, 4.0
 # Root mean square of residual over law beyond which a power law is flagged, and refused.
 _CURVED, _NO_LAW = 0.05, 0.5
 NEWTONIAN, POWER_LAW = "Newtonian", "power law"
@@ -50,34 +70,64 @@ class FlowCurve:
     law : `NEWTONIAN` or `POWER_LAW`
     consistency : K `[Pa.s^n]`; the viscosity itself `[Pa.s]` of a Newtonian liquid
     index : n; 1 for a Newtonian liquid
-    u_consistency, u_index : from the scatter about the law
+    covariance : of ln K and n from the scatter about the law, shape (2, 2)
+    readings : how many they are
+    dof : degrees of freedom of the scatter
     relative_error : root mean square of residual over law
+    drift : half the difference between the highest and the lowest sweep, relative
+    misses : whether the residuals follow each other along the rate
     """
 
     law: str
     consistency: float
     index: float
-    u_consistency: float
-    u_index: float
+    covariance: FloatArray
+    readings: int
+    dof: int
     relative_error: float
+    drift: float
+    misses: bool
     rates: tuple[float, float]
     reason: str
     diagnostics: dict[str, float | int | str]
 
+    @property
+    def u_index(self) -> float:
+        """Standard uncertainty of n from the scatter."""
+        return math.sqrt(self.covariance[1, 1])
 
-def fit_flow_curve(rate_per_s: FloatArray, viscosity_Pas: FloatArray) -> FlowCurve:
+
+@dataclass(frozen=True, slots=True)
+class FlowResult:
+    """Values and refusals of one file, and its readings."""
+
+    values: tuple[MeasuredValue, ...]
+    refusals: tuple[Refusal, ...]
+    readings: FlowReadings
+
+
+def fit_flow_curve(
+    rate_per_s: FloatArray,
+    viscosity_Pas: FloatArray,
+    sweeps: Sequence[NDArray[np.intp]] = (),
+    max_drift: float = math.inf,
+) -> FlowCurve:
     r"""Fit $\ln \mu = \ln K + (n - 1) \ln \dot\gamma$, and $\ln \mu$ = constant.
 
     The constant is taken where it is enough. Least squares on the logarithms, as the errors of a
-    rheometer are about a constant fraction of the reading.
+    rheometer are about a constant fraction of the reading. Each sweep has a level of its own, and
+    the curve is that of their mean.
 
     Parameters
     ----------
     rate_per_s, viscosity_Pas : positive, shape (n,)
+    sweeps : indices of each; one sweep if there are none
+    max_drift : difference between sweeps beyond which they are no repeats
 
     Raises
     ------
-    FitRefused : too few readings, one rate only, or a scatter that no power law explains
+    FitRefused : too few readings, one rate only, sweeps that differ, or a scatter that no power law
+        explains
     """
     if len(rate_per_s) < _MIN_READINGS:
         raise FitRefused(
@@ -87,8 +137,21 @@ def fit_flow_curve(rate_per_s: FloatArray, viscosity_Pas: FloatArray) -> FlowCur
         raise FitRefused(
             f"all readings are at {rate_per_s[0]:g} 1/s: one rate tells nothing of a flow curve"
         )
+    level = levels(sweeps, rate_per_s, viscosity_Pas)
+    drift = math.expm1(float(np.ptp(level))) if len(sweeps) > 1 else 0.0
+    if drift > max_drift:
+        raise FitRefused(
+            f"the file holds {len(sweeps)} sweeps over the same shear rates whose viscosities "
+            f"differ by {drift:.0%}, more than `max_sweep_drift` = {max_drift:.0%}: several "
+            "temperatures, or a liquid that changes; one law through all of them belongs to none, "
+            "so export each to a file of its own, or with its temperature",
+            {"sweeps": len(sweeps), "drift": drift},
+        )
     y, ones = np.log(viscosity_Pas), np.ones_like(rate_per_s)
-    design = np.stack([ones, np.log(rate_per_s)], axis=1)
+    for sweep, own in zip(sweeps, level.tolist(), strict=True):
+        y[sweep] -= own
+    logs = np.log(rate_per_s)
+    design = np.stack([ones, logs], axis=1)
     choice = choose(
         [
             (NEWTONIAN, lambda: fit_linear(ones[:, None], y)),
@@ -103,49 +166,163 @@ def fit_flow_curve(rate_per_s: FloatArray, viscosity_Pas: FloatArray) -> FlowCur
             f"{_NO_LAW:.0%}: this is no power-law fluid at one state",
             {"relative_error": relative},
         )
-    k = float(np.exp(fit.parameters[0]))
-    slope, u_slope = (
-        (float(fit.parameters[1]), float(fit.standard_errors[1]))
-        if choice.name == POWER_LAW
-        else (0.0, 0.0)
-    )
+    covariance = np.zeros((2, 2))
+    covariance[: fit.parameter_count, : fit.parameter_count] = fit.covariance
     said = {f"aicc {t.name}": t.aicc for t in choice.tried if t.aicc is not None}
     return FlowCurve(
         law=choice.name,
-        consistency=k,
-        index=1.0 + slope,
-        u_consistency=k * float(fit.standard_errors[0]),
-        u_index=u_slope,
+        consistency=float(np.exp(fit.parameters[0])),
+        index=1.0 + (float(fit.parameters[1]) if choice.name == POWER_LAW else 0.0),
+        covariance=covariance,
+        readings=len(y),
+        dof=fit.dof,
         relative_error=relative,
+        drift=0.5 * drift,
+        misses=residual_runs(logs, fit, _FALSE_ALARMS).found,
         rates=(float(rate_per_s.min()), float(rate_per_s.max())),
         reason=choice.reason,
-        diagnostics={"readings": len(y), "relative_error": relative, **said},
+        diagnostics={
+            "readings": len(y),
+            "sweeps": max(len(sweeps), 1),
+            "relative_error": relative,
+            **said,
+        },
     )
 
 
 def flow_curve_values(
-    specimen: Specimen, recording: Recording
-) -> tuple[tuple[MeasuredValue, ...], FlowReadings]:
-    """Reduce a file of shear rates to K and n, or to a Newtonian viscosity, and the curve itself.
+    specimen: Specimen, recording: Recording, config: ViscosityConfig
+) -> FlowResult:
+    """Reduce a file of shear rates to K and n, or to a Newtonian viscosity, at each temperature.
 
     Raises
     ------
-    FitRefused : no viscosity, a sample that is not named, a temperature that changes, no law
+    FitRefused : no viscosity, a sample that is not named, or nothing at any temperature
     """
     chosen = _sample(specimen, recording)
     columns = {name: values[chosen] for name, values in recording.columns.items()}
     if "viscosity_Pas" not in columns:
         raise FitRefused("the file has shear rates and no viscosity")
-    _one_temperature(columns)
     first = recording.source.first_line
-    lines = columns["line"] if "line" in columns else first + np.flatnonzero(chosen)
-    rate, viscosity = columns["shear_rate_per_s"], columns["viscosity_Pas"]
-    good = (rate > 0) & (viscosity > 0)
+    columns.setdefault("line", first + np.flatnonzero(chosen).astype(np.float64))
+    good = (columns["shear_rate_per_s"] > 0) & (columns["viscosity_Pas"] > 0)
     flags: tuple[Flag, ...] = ()
     if not good.all():
-        bad = lines_text(lines[~good])
+        bad = lines_text(columns["line"][~good])
         flags = (Flag("not-positive", f"rate or viscosity of zero or less: lines {bad} left out"),)
-    curve = fit_flow_curve(rate[good], viscosity[good])
+    kept = {name: values[good] for name, values in columns.items()}
+    values: list[MeasuredValue] = []
+    refusals: list[Refusal] = []
+    groups = _at_each_temperature(kept, config)
+    for kelvin, sweeps in groups:
+        at: dict[str, Condition] = {} if kelvin is None else {"temperature_K": kelvin}
+        try:
+            values += _of_group(kept, sweeps, at, flags, config)
+        except FitRefused as error:
+            if len(groups) == 1:
+                raise
+            refusals.append(refusal(specimen, VISCOSITY, error, at))
+    if not values:
+        raise FitRefused("; ".join(r.reason for r in refusals[:1]) or "no reading is left")
+    curves = {v.conditions.get("temperature_K"): v.conditions["rate_per_s"] for v in values}
+    for measured in curves.values():
+        unknown = too_far(_pair(measured), config)
+        if unknown is not None:
+            refusals.append(refusal(specimen, AT_PRINTING_RATE, unknown, {}))
+            break
+    readings = FlowReadings(kept["shear_rate_per_s"], kept["viscosity_Pas"])
+    return FlowResult(tuple(values), tuple(refusals), readings)
+
+
+def _pair(rates: Condition) -> tuple[float, float]:
+    if isinstance(rates, tuple):
+        return float(rates[0]), float(rates[1])
+    return float(rates), float(rates)
+
+
+def _at_each_temperature(
+    columns: Mapping[str, FloatArray], config: ViscosityConfig
+) -> list[tuple[float | None, list[NDArray[np.intp]]]]:
+    """Sweeps at one temperature together; None where the file states no temperature.
+
+    Raises
+    ------
+    FitRefused : a temperature that moves within a sweep
+    """
+    if not len(columns["shear_rate_per_s"]):
+        raise FitRefused("no reading has a rate and a viscosity above zero")
+    sweeps = parted(columns["shear_rate_per_s"])
+    if "temperature_K" not in columns:
+        return [(None, sweeps)]
+    kelvin = columns["temperature_K"]
+    groups: list[list[NDArray[np.intp]]] = []
+    for sweep in sweeps:
+        spread = float(np.ptp(kelvin[sweep]))
+        if spread > config.temperature_tolerance_K:
+            raise FitRefused(
+                f"the temperature changes by {spread:.3g} K within "
+                f"{'the file' if len(sweeps) == 1 else 'a sweep'}: this is a temperature sweep, "
+                "not a flow curve"
+            )
+        near = [
+            g
+            for g in groups
+            if abs(kelvin[g[0]].mean() - kelvin[sweep].mean()) <= config.temperature_tolerance_K
+        ]
+        if near:
+            near[0].append(sweep)
+        else:
+            groups.append([sweep])
+    return [(tenth_of_degree(float(kelvin[np.concatenate(g)].mean())), g) for g in groups]
+
+
+def _of_group(
+    columns: Mapping[str, FloatArray],
+    sweeps: Sequence[NDArray[np.intp]],
+    at: Mapping[str, Condition],
+    flags: tuple[Flag, ...],
+    config: ViscosityConfig,
+) -> list[MeasuredValue]:
+    """Fit the sweeps of one temperature and answer."""
+    index = np.concatenate(sweeps)
+    ends = np.cumsum([len(s) for s in sweeps])
+    local = np.split(np.arange(len(index)), ends[:-1])
+    rate, viscosity = columns["shear_rate_per_s"][index], columns["viscosity_Pas"][index]
+    curve = fit_flow_curve(rate, viscosity, local, config.max_sweep_drift)
+    lines = columns["line"][index]
+    span = (int(lines.min()), int(lines.max()))
+    told = (*flags, *_flags(curve, len(sweeps)))
+    given = _Given(curve, {**at, "rate_per_s": curve.rates}, span, told, config)
+    k, n = curve.consistency, curve.index
+    if curve.law == NEWTONIAN:
+        values = [_value(given, VISCOSITY, k, np.array([k, 0.0]), k)]
+    else:
+        values = [
+            _value(given, CONSISTENCY, k, np.array([k, 0.0]), k),
+            _value(given, INDEX, n, np.array([0.0, 1.0]), 0.0),
+        ]
+    printing = config.printing_rate_per_s
+    if printing is not None and too_far(curve.rates, config) is None:
+        mu = k * printing ** (n - 1.0)
+        lines_, further = extrapolation(curve.rates, mu, config)
+        there = _Given(curve, {**at, "rate_per_s": printing}, span, (*told, *further), config)
+        slopes = mu * np.array([1.0, math.log(printing)])
+        values.append(_value(there, AT_PRINTING_RATE, mu, slopes, mu, tuple(lines_)))
+    return values
+
+
+def _flags(curve: FlowCurve, sweeps: int) -> tuple[Flag, ...]:
+    flags: tuple[Flag, ...] = ()
+    apart = 2.0 * curve.drift
+    each = curve.relative_error * math.sqrt(2.0 * sweeps / curve.readings)
+    if apart > max(_DRIFT, _DRIFT_SDS * each):
+        flags += (
+            Flag(
+                "several-sweeps",
+                f"{sweeps} sweeps over the same shear rates differ by {apart:.1%}: the value is "
+                "that of their mean, and its interval reaches to each of them",
+            ),
+        )
     if curve.relative_error > _CURVED:
         flags += (
             Flag(
@@ -154,41 +331,70 @@ def flow_curve_values(
                 "square): it describes the range and is not the law of this fluid",
             ),
         )
-    span = (int(lines.min()), int(lines.max()))
-    values = tuple(
-        _value(key, v, u, curve, span, flags)
-        for key, v, u in (
-            ((VISCOSITY, curve.consistency, curve.u_consistency),)
-            if curve.law == NEWTONIAN
-            else (
-                (CONSISTENCY, curve.consistency, curve.u_consistency),
-                (INDEX, curve.index, curve.u_index),
-            )
+    if curve.misses:
+        flags += (
+            Flag(
+                "systematic-misfit",
+                f"residuals of the {curve.law} follow each other along the rate: what it misses "
+                f"the readings by, {curve.relative_error:.1%} (root mean square), is in the "
+                "uncertainty",
+            ),
         )
-    )
-    return values, FlowReadings(rate[good], viscosity[good])
+    return flags
+
+
+@dataclass(frozen=True, slots=True)
+class _Given:
+    """What all values of a curve have in common."""
+
+    curve: FlowCurve
+    conditions: Mapping[str, Condition]
+    lines: tuple[int, int]
+    flags: tuple[Flag, ...]
+    config: ViscosityConfig
 
 
 def _value(
+    given: _Given,
     key: str,
     value: float,
-    u: float,
-    curve: FlowCurve,
-    lines: tuple[int, int],
-    flags: tuple[Flag, ...],
+    slopes: FloatArray,
+    proportional: float,
+    further: tuple[Contribution, ...] = (),
 ) -> MeasuredValue:
-    budget = (Contribution("scatter about the flow curve", u, shared=False),)
-    conditions: dict[str, Condition] = {"rate_per_s": curve.rates}
+    """Make a value with its budget.
+
+    Parameters
+    ----------
+    slopes : derivatives by ln K and n
+    proportional : the value, where it grows with every reading; 0 for an index
+    """
+    curve, config = given.curve, given.config
+    scatter = math.sqrt(max(float(slopes @ curve.covariance @ slopes), 0.0))
+    scatter *= coverage_factor(curve.dof) / NORMAL
+    budget = [Contribution("scatter about the flow curve", scatter, shared=False)]
+    if curve.drift and proportional:
+        u = proportional * curve.drift / math.sqrt(3.0)
+        budget.append(Contribution("difference between sweeps", u, shared=False))
+    if curve.misses:
+        # over the range of ln rate a miss tilts the law by as much again
+        tilt = curve.relative_error / max(math.log(curve.rates[1] / curve.rates[0]), 1.0)
+        u = proportional * curve.relative_error if proportional else 2.0 * tilt
+        budget.append(Contribution("law misses its readings", u, shared=False))
+    if proportional and config.reading_calibration:
+        u = proportional * config.reading_calibration
+        budget.append(Contribution("rheometer calibration", u, shared=True))
+    budget += further
     return MeasuredValue(
         key,
-        Quantity.from_budget(value, property_key(key).unit, budget),
-        budget,
-        f"{curve.law} by least squares on ln viscosity against ln rate, errors a constant "
-        f"fraction of the reading; {curve.reason}",
-        conditions,
-        lines,
+        Quantity.from_budget(value, property_key(key).unit, tuple(budget)),
+        tuple(budget),
+        f"{curve.law} by least squares on ln viscosity against ln rate, errors a constant fraction "
+        f"of the reading; {curve.reason}",
+        given.conditions,
+        given.lines,
         diagnostics=curve.diagnostics,
-        flags=flags,
+        flags=given.flags,
     )
 
 
@@ -206,14 +412,3 @@ def _sample(specimen: Specimen, recording: Recording) -> NDArray[np.bool_]:
             f"{', '.join(names)}"
         )
     return np.asarray(index == names.index(specimen.notes["sample"]))
-
-
-def _one_temperature(columns: dict[str, FloatArray]) -> None:
-    if "temperature_K" not in columns:
-        return
-    spread = float(np.ptp(columns["temperature_K"]))
-    if spread > _TEMPERATURE_SPREAD_K:
-        raise FitRefused(
-            f"the temperature changes by {spread:.3g} K within the file: this is a temperature "
-            "sweep, not a flow curve"
-        )

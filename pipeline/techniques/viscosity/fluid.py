@@ -13,22 +13,29 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
 from deamat.core.laws import FORMS, POWER_LAW_FLUID
 from deamat.core.records import Detail, Flag
+from deamat.estimators.least_squares.lack_of_fit import outlying_points, residual_runs
 from deamat.estimators.least_squares.linear import fit_linear
 from deamat.estimators.least_squares.polynomial import PolynomialFit, fit_polynomial
 from deamat.estimators.least_squares.power_law import PowerLawFit, fit_power_law
+from deamat.estimators.mean import coverage_factor
 from deamat.estimators.selection import DECISIVE, aicc, choose
+from deamat.formats.viscometer import lines_text
 from deamat.techniques.viscosity.config import RateFactor, ViscosityConfig
+from deamat.techniques.viscosity.misfit import with_relative_u
 from deamat.techniques.viscosity.readings import Readings
 from deamat.techniques.viscosity.time_law import TimeLaw, drift_of, relative_error
 from deamat.techniques.viscosity.window import Windowed, combined, common_range
 
 _MAX_DEGREE = {"K": 4, "n": 2}
 _CHECKED_TIMES = 200
+_FALSE_ALARMS = 0.002  # how often residuals of a surface that is right seem to follow each other
+_ROUNDS, _MOST_OFF = 3, 0.2
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,6 +110,8 @@ def rate_factor(readings: Readings, config: ViscosityConfig) -> RateFactor:
 def fit_fluid(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeLaw | None:
     """Fit K(t) and n(t) as one surface, with the degrees that the two stages support.
 
+    Readings far off the surface, as bubbles make them, are left out by line, up to a fifth.
+
     Returns
     -------
     the law, or None where a Newtonian liquid explains the readings as well
@@ -111,6 +120,42 @@ def fit_fluid(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeLaw |
     ------
     FitRefused : too few sweeps, no two speeds common to all of them, or no declared shear rate
     """
+    kept = list(windows)
+    for _ in range(_ROUNDS):
+        found = _fit_surface(kept, config)
+        if found is None:
+            return None
+        law, off, cut = found
+        if not off.size or off.size > _MOST_OFF * sum(len(w.readings) for w in cut):
+            break
+        kept = _without(cut, off)
+    given, left = (np.concatenate([w.readings.line for w in ws]) for ws in (windows, kept))
+    if len(left) == len(given) or len(windows) > 1:
+        return law
+    lines = given[(given >= left.min()) & (given <= left.max()) & ~np.isin(given, left)]
+    flag = Flag(
+        "outlying-readings",
+        f"{len(lines)} readings lie far off the surface, as with bubbles at the rotor: lines "
+        f"{lines_text(lines)} left out",
+    )
+    return replace(law, flags=(*law.flags, flag)) if len(lines) else law
+
+
+def _without(windows: Sequence[Windowed], off: NDArray[np.intp]) -> list[Windowed]:
+    """Leave out readings, counted through all windows."""
+    good = np.ones(sum(len(w.readings) for w in windows), dtype=bool)
+    good[off] = False
+    ends = np.cumsum([len(w.readings) for w in windows])
+    return [
+        replace(w, readings=w.readings.where(chosen))
+        for w, chosen in zip(windows, np.split(good, ends[:-1]), strict=True)
+    ]
+
+
+def _fit_surface(
+    windows: Sequence[Windowed], config: ViscosityConfig
+) -> tuple[TimeLaw, NDArray[np.intp], list[Windowed]] | None:
+    """Fit the surface once: the law, the readings far off it, and the windows cut to sweeps."""
     swept = [_swept(window, config) for window in windows]
     readings = combined([window for window, _ in swept])
     factor = rate_factor(readings, config)
@@ -126,19 +171,24 @@ def fit_fluid(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeLaw |
     coefficients = np.concatenate([surface.factor, surface.exponent])
     parts = (len(surface.factor), len(surface.exponent))
     law, slopes = FORMS[POWER_LAW_FLUID](coefficients, times, rates, parts)
+
+    def moved_by(shift_Pas: FloatArray) -> FloatArray:
+        return drift_of(
+            surface.covariance,
+            surface.fit.error_variance,
+            slopes * rates[:, None],
+            sigma,
+            shift_Pas * rates,
+        )
+
     choice = f"power law AICc {score['power law']:.1f}, Newtonian {score['Newtonian']:.1f}"
     fitted = TimeLaw(
         kind=POWER_LAW_FLUID,
         coefficients=coefficients,
         parts=parts,
         covariance=surface.covariance,
-        drift=drift_of(
-            surface.covariance,
-            surface.fit.error_variance,
-            slopes * rates[:, None],
-            sigma,
-            readings.calibration_Pas * rates,
-        ),
+        drift=moved_by(readings.calibration_Pas),
+        thermal=moved_by(readings.thermal_Pas),
         valid=common_range([window.valid for window, _ in swept]),
         rates=_common_rates([s for _, found in swept for s in found], factor.per_s_per_rpm),
         relative_error=relative_error(readings.viscosity_Pas, law),
@@ -154,7 +204,29 @@ def fit_fluid(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeLaw |
         },
         rate_per_rpm_per_s=factor.per_s_per_rpm,
     )
-    return _compared(fitted, stages)
+    fitted = _compared(fitted, stages)
+    runs = residual_runs(times, surface.fit, _FALSE_ALARMS)
+    if runs.found:
+        missed = _greatest_of_sweep(swept, readings.viscosity_Pas / law - 1.0)
+        flag = Flag(
+            "systematic-misfit",
+            f"residuals of the surface follow each other (von Neumann ratio {runs.ratio:.2f} where "
+            f"noise has 2): it misses a sweep by up to {missed:.1%}, and its interval is as wide",
+        )
+        wider = with_relative_u(fitted, missed / coverage_factor(fitted.dof))
+        fitted = replace(wider, flags=(*fitted.flags, flag))
+    return fitted, outlying_points(surface.fit), [window for window, _ in swept]
+
+
+def _greatest_of_sweep(swept: Sequence[tuple[Windowed, Sequence[Sweep]]], off: FloatArray) -> float:
+    """By how much the middle of a sweep leaves the surface at most, relative."""
+    first, greatest = 0, 0.0
+    for window, found in swept:
+        greatest = max(
+            [greatest, *(abs(float(off[first + s.first : first + s.last].mean())) for s in found)]
+        )
+        first += len(window.readings)
+    return greatest
 
 
 def _swept(window: Windowed, config: ViscosityConfig) -> tuple[Windowed, list[Sweep]]:

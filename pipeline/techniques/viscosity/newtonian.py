@@ -17,15 +17,25 @@ from deamat.estimators.least_squares.fit import Fit
 from deamat.estimators.least_squares.linear import fit_linear
 from deamat.estimators.least_squares.monotone import fit_non_decreasing
 from deamat.estimators.least_squares.nonlinear import fit_nonlinear
-from deamat.estimators.selection import Choice, choose, choose_for
+from deamat.estimators.selection import Choice, akaike_weights, choose, choose_for
 from deamat.techniques.viscosity.calibration import settled
 from deamat.techniques.viscosity.config import ViscosityConfig
+from deamat.techniques.viscosity.fitted import Fitted, supported_of
+from deamat.techniques.viscosity.misfit import (
+    held_by,
+    misfit_of,
+    widened_by_choice,
+    widened_by_misfit,
+)
 from deamat.techniques.viscosity.readings import Readings
 from deamat.techniques.viscosity.time_law import TimeLaw, drift_of, relative_error
 from deamat.techniques.viscosity.window import Windowed, combined, common_range
 
 # A law that predicts left-out readings worse than the best by more than this is flagged.
 _PREDICTS_WORSE = 1.1
+# A law of another form must be exp(3 / 2) times better supported than a polynomial to weigh as
+# much: with few coefficients it comes near a polynomial of many, and its interval lacks its bias.
+_ANOTHER_FAMILY = 3.0
 _GEL_TIMES = np.geomspace(1.02, 8.0, 10)  # over the last time: where to start looking for the gel
 
 
@@ -37,20 +47,24 @@ class LawFit(Fit):
     ----------
     kind, coefficients : as `core.laws.FORMS` takes them
     covariance : of the coefficients, shape (p, p)
+    held : by how much holding it to its shape raises the weighted squares, over their variance
     """
 
     kind: str
     coefficients: FloatArray
     covariance: FloatArray
+    held: float = 0.0
 
 
-def fit_newtonian(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeLaw:
+def fit_newtonian(windows: Sequence[Windowed], config: ViscosityConfig) -> Fitted:
     """Choose the smallest law that the readings support and say what it is worth.
 
     Polynomials are kept positive and from falling; candidates are compared by AICc and the choice
     is checked by leave-one-out cross-validation (see `estimators.selection`); a tolerance in the
-    configuration takes a cheaper one where that answers as well as asked. What changes of
-    rotor or speed show of the calibration error is taken off first (see `calibration`).
+    configuration takes a cheaper one where that answers as well as asked. Answers are those of all
+    laws that the data do not tell apart, or of the readings where the law misses these (see
+    `misfit`). What changes of rotor or speed show of the calibration error is taken off first (see
+    `calibration`).
 
     Raises
     ------
@@ -59,33 +73,12 @@ def fit_newtonian(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeL
     steps = settled(combined(windows), config.max_degree)
     readings = steps.readings
     choice = _chosen(readings, config)
-    fit = choice.fit
-    law, slopes = FORMS[fit.kind](fit.coefficients, readings.time_s, None, ())
-    relative = relative_error(readings.viscosity_Pas, law)
-    if relative > config.max_relative_error:
-        raise FitRefused(
-            f"the best law, {choice.name}, misses the readings by {relative:.1%} (root mean "
-            f"square), more than {config.max_relative_error:.0%}: none of the laws on offer "
-            "describes this run",
-            {"relative_error": relative, **scores(choice)},
-        )
-    return TimeLaw(
-        kind=fit.kind,
-        coefficients=fit.coefficients,
-        parts=(),
-        covariance=fit.covariance,
-        drift=drift_of(
-            fit.covariance,
-            fit.error_variance,
-            slopes,
-            readings.noise_Pas,
-            readings.calibration_Pas,
-        ),
-        valid=_valid(fit, windows),
-        rates=None,
-        relative_error=relative,
-        dof=fit.dof,
-        name=choice.name,
+
+    def law_of(name: str, fit: LawFit) -> TimeLaw:
+        return _time_law(name, fit, readings, windows)
+
+    law = replace(
+        law_of(choice.name, choice.fit),
         reason=choice.reason,
         diagnostics={
             "calibration_shift": steps.shift,
@@ -93,6 +86,44 @@ def fit_newtonian(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeL
             **scores(choice),
         },
         flags=(*steps.flags, *_flags(choice)),
+    )
+    if law.relative_error > config.max_relative_error:
+        raise FitRefused(
+            f"the best law, {choice.name}, misses the readings by {law.relative_error:.1%} (root "
+            f"mean square), more than {config.max_relative_error:.0%}: none of the laws on offer "
+            "describes this run",
+            {"relative_error": law.relative_error, **scores(choice)},
+        )
+    missed = misfit_of(law, choice.fit, choice.fit.held, readings)
+    if missed is not None:
+        return Fitted(widened_by_misfit(law, missed), ((1.0, law),), missed.direct)
+    handicaps = [0.0 if f.kind == POLYNOMIAL else _ANOTHER_FAMILY for _, f in choice.scored]
+    weights = akaike_weights([f for _, f in choice.scored], handicaps)
+    supported = supported_of(weights, [law_of(n, f) for n, f in choice.scored])
+    asked_for = config.answer_within is not None
+    return widened_by_choice(Fitted(law, supported, asked_for=asked_for))
+
+
+def _time_law(name: str, fit: LawFit, readings: Readings, windows: Sequence[Windowed]) -> TimeLaw:
+    values, slopes = FORMS[fit.kind](fit.coefficients, readings.time_s, None, ())
+
+    def moved_by(shift: FloatArray) -> FloatArray:
+        return drift_of(fit.covariance, fit.error_variance, slopes, readings.noise_Pas, shift)
+
+    return TimeLaw(
+        kind=fit.kind,
+        coefficients=fit.coefficients,
+        parts=(),
+        covariance=fit.covariance,
+        drift=moved_by(readings.calibration_Pas),
+        thermal=moved_by(readings.thermal_Pas),
+        valid=_valid(fit, windows),
+        rates=None,
+        relative_error=relative_error(readings.viscosity_Pas, values),
+        dof=fit.dof,
+        name=name,
+        reason="",
+        diagnostics={},
     )
 
 
@@ -139,10 +170,12 @@ def _offers(
 
 
 def _polynomial(readings: Readings, degree: int) -> LawFit:
-    fit = fit_non_decreasing(
+    found = fit_non_decreasing(
         readings.time_s, readings.viscosity_Pas, degree, 0.0, readings.noise_Pas
-    ).fit
-    return _law_fit(POLYNOMIAL, fit, fit.coefficients, fit.covariance)
+    )
+    fit = found.fit
+    made = _law_fit(POLYNOMIAL, fit, fit.coefficients, fit.covariance)
+    return replace(made, held=held_by(found)) if found.active else made
 
 
 def _exponential(readings: Readings) -> LawFit:

@@ -16,9 +16,10 @@ from deamat.core.properties import property_key
 from deamat.core.records import Law, Origin, Specimen
 from deamat.estimators.mean import coverage_factor
 from deamat.techniques.viscosity.config import CONSISTENCY, INDEX, VISCOSITY, ViscosityConfig
+from deamat.techniques.viscosity.fitted import Fitted
 from deamat.techniques.viscosity.fluid import fit_fluid, is_swept
 from deamat.techniques.viscosity.newtonian import fit_newtonian
-from deamat.techniques.viscosity.time_law import TimeLaw
+from deamat.techniques.viscosity.time_law import TimeLaw, growth
 from deamat.techniques.viscosity.window import Windowed
 
 _CHECKED_TIMES = 5
@@ -26,7 +27,7 @@ _CHECKED_TIMES = 5
 _ANOTHER_UNIT = 100.0
 
 
-def fit_law(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeLaw:
+def fit_law(windows: Sequence[Windowed], config: ViscosityConfig) -> Fitted:
     """Fit a power-law fluid where speeds were swept and show one, else a Newtonian law.
 
     Raises
@@ -36,7 +37,7 @@ def fit_law(windows: Sequence[Windowed], config: ViscosityConfig) -> TimeLaw:
     if all(is_swept(w.readings, config) for w in windows):
         fluid = fit_fluid(windows, config)
         if fluid is not None:
-            return fluid
+            return Fitted(fluid, ((1.0, fluid),))
     return fit_newtonian(windows, config)
 
 
@@ -51,12 +52,13 @@ def fit_runs(windows: Sequence[Windowed], config: ViscosityConfig) -> tuple[Time
     ------
     FitRefused : as in `fit_law`
     """
-    law = fit_law(windows, config)
+    law = fit_law(windows, config).law
     if len(windows) == 1:
         return law, np.ones(1)
     levels = np.array([_level(law, window) for window in windows])
     levels /= levels.mean()
-    return fit_law([_scaled(w, f) for w, f in zip(windows, levels, strict=True)], config), levels
+    scaled = [_scaled(w, f) for w, f in zip(windows, levels, strict=True)]
+    return fit_law(scaled, config).law, levels
 
 
 def refuse_mixed_units(windows: Mapping[str, Windowed]) -> None:
@@ -88,6 +90,7 @@ def _scaled(window: Windowed, level: float) -> Windowed:
             viscosity_Pas=r.viscosity_Pas / level,
             noise_Pas=r.noise_Pas / level,
             calibration_Pas=r.calibration_Pas / level,
+            thermal_Pas=r.thermal_Pas / level,
         ),
     )
 
@@ -135,6 +138,7 @@ def laws_of(
         method=f"{law.name} of {_runs(len(levels))}; {method}; {law.reason}",
         origins=origins,
         flags=law.flags,
+        relative_scatter=law.relative_error,
         diagnostics={
             "relative_error": law.relative_error,
             "runs": len(levels),
@@ -169,17 +173,18 @@ def _part(whole: Law, key: str, covariance: FloatArray, part: slice, dof: float)
         diagnostics={},
         parts=(),
         rates=None,
+        relative_scatter=None,
         degrees_of_freedom=dof,
     )
 
 
 def _whole_covariance(law: TimeLaw, levels: FloatArray) -> tuple[FloatArray, float]:
     """Covariance with every error, and its degrees of freedom."""
-    drift = np.outer(law.drift, law.drift)
+    drift = np.outer(law.drift, law.drift) + np.outer(law.thermal, law.thermal)
     n = len(levels)
     if n == 1:
         return law.covariance + drift, float(law.dof)
-    upwards = _growth(law)
+    upwards = growth(law)
     level = float(np.var(levels, ddof=1)) / n * np.outer(upwards, upwards)
     factors = []
     for time_s in np.linspace(*law.valid, _CHECKED_TIMES).tolist():
@@ -203,15 +208,6 @@ def _factor(scatter_u2: float, level_u2: float, drift_u2: float, dof: int, n: in
     welch = coverage_factor(whole**2 / terms) if terms > 0 else coverage_factor(math.inf)
     alone = coverage_factor(n - 1.0) * math.sqrt(level_u2 / whole) if whole > 0 else 0.0
     return max(welch, alone)
-
-
-def _growth(law: TimeLaw) -> FloatArray:
-    """Change of the coefficients when viscosity grows by a factor, per unit of the factor."""
-    c = law.coefficients.copy()
-    if law.kind == POLYNOMIAL:
-        return c
-    c[law.parts[0] if law.parts else 1 :] = 0.0
-    return c
 
 
 def _nested(matrix: FloatArray) -> tuple[tuple[float, ...], ...]:

@@ -16,6 +16,7 @@ from deamat.core.viscometer import full_scale_Pas
 from deamat.formats.viscometer import lines_text
 from deamat.techniques.viscosity.config import ViscosityConfig
 
+ZERO_C_K = 273.15
 # Torque is printed to 0.1 % and viscosity to 1 mPa.s: half of each, and as much again for an
 # instrument that cuts where it should round.
 _TORQUE_STEP = 0.001
@@ -34,9 +35,12 @@ class Readings:
     time_s, viscosity_Pas : shape (n,)
     noise_Pas : standard deviation of a single reading, shape (n,)
     calibration_Pas : what one standard uncertainty of the calibration adds to each reading, all of
-        them together, shape (n,); zeros where the file states no full scale
+        them together, shape (n,)
     speed_rpm, rotor : shape (n,); zeros where the file does not say
     line : of the file, shape (n,)
+    temperature_K : by the probe, shape (n,); NaN where there is none
+    thermal_Pas : what one standard uncertainty of the activation energy adds to each reading that
+        was corrected to one temperature, shape (n,); zeros where none was
     errors : the error model in words
     """
 
@@ -47,6 +51,8 @@ class Readings:
     speed_rpm: FloatArray
     rotor: FloatArray
     line: FloatArray
+    temperature_K: FloatArray
+    thermal_Pas: FloatArray
     errors: str
     flags: tuple[Flag, ...] = ()
 
@@ -66,7 +72,7 @@ class Readings:
     def where(self, chosen: NDArray[np.bool_] | NDArray[np.intp] | slice) -> Readings:
         """Keep the chosen readings (a mask, an index array or a slice)."""
         kept = {name: column[chosen] for name, column in self.columns.items()}
-        return _of(kept, self.errors, self.flags)
+        return _of(kept, self)
 
 
 _COLUMNS = (
@@ -77,6 +83,8 @@ _COLUMNS = (
     "speed_rpm",
     "rotor",
     "line",
+    "temperature_K",
+    "thermal_Pas",
 )
 
 
@@ -86,12 +94,28 @@ def joined(runs: Sequence[Readings]) -> Readings:
         return runs[0]
     columns = [run.columns for run in runs]
     whole = {name: np.concatenate([c[name] for c in columns]) for name in _COLUMNS}
-    return _of(whole, runs[0].errors, runs[0].flags)
+    return _of(whole, runs[0])
 
 
-def _of(columns: Mapping[str, FloatArray], errors: str, flags: tuple[Flag, ...]) -> Readings:
-    time_s, viscosity, noise, calibration, speed, rotor, line = (columns[n] for n in _COLUMNS)
-    return Readings(time_s, viscosity, noise, calibration, speed, rotor, line, errors, flags)
+def _of(columns: Mapping[str, FloatArray], like: Readings) -> Readings:
+    time, viscosity, noise, calibration, speed, rotor, line, kelvin, thermal = (
+        columns[name] for name in _COLUMNS
+    )
+    return Readings(
+        time, viscosity, noise, calibration, speed, rotor, line, kelvin, thermal, like.errors,
+        like.flags,
+    )  # fmt: skip
+
+
+def tenth_of_degree(kelvin: float) -> float:
+    """Round to a tenth of a degree Celsius, as probes show it `[K]`."""
+    return round(kelvin - ZERO_C_K, 1) + ZERO_C_K
+
+
+def speeds_alternate(readings: Readings) -> bool:
+    """Whether speeds are swept: changed at more than every fourth reading."""
+    changes = np.count_nonzero(np.diff(readings.speed_rpm))
+    return bool(changes > 0.25 * len(readings))
 
 
 def audited(
@@ -111,19 +135,21 @@ def audited(
         raise FitRefused("the file has no viscosity")
     viscosity = columns["viscosity_Pas"]
     line = columns["line"] if "line" in columns else np.arange(1.0, len(viscosity) + 1)
+    probe = columns.get("temperature_K", np.full(len(viscosity), np.nan))
     stuck = _stuck(viscosity)
     stuck_flags = _left_out(
         "at-its-limit", f"{viscosity[stuck].max():g} Pa.s again and again at the top of a rise, as "
         "a display at the end of its range shows it", line[stuck],
     ) if stuck.any() else []  # fmt: skip
     if "rotor" not in columns or "speed_rpm" not in columns:
-        readings = _positive(_of_reading(time_s, viscosity, line, config).where(~stuck))
+        whole = _of_reading(time_s, viscosity, line, probe, config)
+        readings = _positive(whole.where(~stuck))
         return replace(readings, flags=(*stuck_flags, *readings.flags))
     rotor, speed = columns["rotor"], columns["speed_rpm"]
     full = _full_scales(rotor, speed, line, machine.spring_torque)
     readings = Readings(
         time_s, viscosity, machine.torque_noise * full, machine.u_torque_calibration * full, speed,
-        rotor, line,
+        rotor, line, probe, np.zeros(len(viscosity)),
         f"errors a constant fraction of full scale ({machine.torque_noise:.2%} noise of a reading, "
         f"{machine.u_torque_calibration:.2%} calibration, shared)",
     )  # fmt: skip
@@ -175,12 +201,18 @@ def _stuck(viscosity: FloatArray) -> NDArray[np.bool_]:
 
 
 def _of_reading(
-    time_s: FloatArray, viscosity: FloatArray, line: FloatArray, config: ViscosityConfig
+    time_s: FloatArray,
+    viscosity: FloatArray,
+    line: FloatArray,
+    probe: FloatArray,
+    config: ViscosityConfig,
 ) -> Readings:
-    zeros = np.zeros(len(viscosity))
+    zeros, size = np.zeros(len(viscosity)), np.abs(viscosity)
     return Readings(
-        time_s, viscosity, config.reading_noise * np.abs(viscosity), zeros, zeros, zeros, line,
-        "errors a constant fraction of the reading: the file states no rotor and speed",
+        time_s, viscosity, config.reading_noise * size, config.reading_calibration * size, zeros,
+        zeros, line, probe, zeros,
+        "errors a constant fraction of the reading, as the file states no rotor and speed "
+        f"({config.reading_calibration:.0%} calibration, shared)",
     )  # fmt: skip
 
 

@@ -7,14 +7,20 @@ from deamat.core.records import MeasuredValue, Measurement, Recording, Refusal, 
 from deamat.core.technique import Context
 from deamat.techniques.shared.outcome import nothing_measured, refusal
 from deamat.techniques.viscosity.clock import since_mixing_s
-from deamat.techniques.viscosity.config import ALWAYS, ViscosityConfig
+from deamat.techniques.viscosity.config import (
+    ALWAYS,
+    AT_PRINTING_RATE,
+    DOUBLING,
+    ViscosityConfig,
+)
+from deamat.techniques.viscosity.fitted import Fitted
 from deamat.techniques.viscosity.flow_curve import flow_curve_values
 from deamat.techniques.viscosity.pooled import fit_law
+from deamat.techniques.viscosity.printing import one_rate, too_far
 from deamat.techniques.viscosity.readings import Readings, audited
 from deamat.techniques.viscosity.result import Run
-from deamat.techniques.viscosity.time_law import TimeLaw
-from deamat.techniques.viscosity.values import asked_of, measured
-from deamat.techniques.viscosity.window import Windowed, windowed
+from deamat.techniques.viscosity.values import asked_of, drifting, drifts, measured
+from deamat.techniques.viscosity.window import Windowed, stated_temperature_K, windowed
 
 
 def reduce(
@@ -39,15 +45,15 @@ def reduce(
         if recording is None:
             raise FitRefused("the register names no data file for this run; fill in `file`")
         if "shear_rate_per_s" in recording.columns:
-            values, flow = flow_curve_values(specimen, recording)
-            return Measurement(specimen, values, (), flow, source)
+            found = flow_curve_values(specimen, recording, config)
+            return Measurement(specimen, found.values, found.refusals, found.readings, source)
         times = since_mixing_s(specimen, recording, context.timezone)
         readings = audited(recording, times, context.machine, config)
-        window = windowed(readings, config)
-        law = fit_law([window], config)
+        window = windowed(readings, config, stated_temperature_K(specimen))
+        fitted = fit_law([window], config)
     except FitRefused as error:
         return nothing_measured(specimen, ALWAYS, error, recording, readings)
-    values_, refusals = _values(specimen, readings, window, law, config)
+    values_, refusals = _values(specimen, readings, window, fitted, config)
     return Measurement(specimen, values_, refusals, readings, source)
 
 
@@ -55,9 +61,10 @@ def _values(
     specimen: Specimen,
     readings: Readings,
     window: Windowed,
-    law: TimeLaw,
+    fitted: Fitted,
     config: ViscosityConfig,
 ) -> tuple[tuple[MeasuredValue, ...], tuple[Refusal, ...]]:
+    law = fitted.law
     lines = window.readings.line
     span = (int(lines.min()), int(lines.max()))
     flags = tuple(dict.fromkeys((*readings.flags, *window.readings.flags, *law.flags)))
@@ -65,7 +72,12 @@ def _values(
     values, refusals = [], []
     for asked in asked_of(law, window, config):
         try:
-            values.append(measured(asked, law, method, flags, span))
+            values.append(measured(asked, fitted, config, method, flags, span))
         except FitRefused as error:
             refusals.append(refusal(specimen, asked.key, error, asked.conditions))
+    if drifts(window):
+        refusals.append(refusal(specimen, DOUBLING, drifting(window), {}))
+    unknown = one_rate(config) if law.rates is None else too_far(law.rates, config)
+    if unknown is not None:
+        refusals.append(refusal(specimen, AT_PRINTING_RATE, unknown, {}))
     return tuple(values), tuple(refusals)

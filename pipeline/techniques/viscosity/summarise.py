@@ -14,7 +14,8 @@ from deamat.techniques.viscosity.config import ALWAYS, VISCOSITY, YIELDS, Viscos
 from deamat.techniques.viscosity.pooled import fit_runs, laws_of, refuse_mixed_units
 from deamat.techniques.viscosity.readings import Readings
 from deamat.techniques.viscosity.result import Run
-from deamat.techniques.viscosity.window import windowed
+from deamat.techniques.viscosity.temperature import alike, refuse_mixed_temperatures
+from deamat.techniques.viscosity.window import Windowed, stated_temperature_K, windowed
 
 
 def summarise(
@@ -22,10 +23,11 @@ def summarise(
 ) -> Summary:
     """Average the values of the runs, and fit one law to all of them."""
     config = context.config
-    summary = summarise_by_mean(measurements, "viscosity", YIELDS)
     ordered = sorted(measurements, key=lambda m: (m.specimen.line, m.specimen.id))
+    tolerance_K = config.temperature_tolerance_K
+    summary = summarise_by_mean(alike(ordered, tolerance_K), "viscosity", YIELDS)
     runs = [
-        (m.specimen, windowed(m.result, config))
+        (m.specimen, windowed(m.result, config, stated_temperature_K(m.specimen)))
         for m in ordered
         if m.values and isinstance(m.result, Readings)
     ]
@@ -39,22 +41,21 @@ def summarise(
         mixed = tuple(refusal(specimen, key, error, {}) for key in ALWAYS)
         return Summary((), (), (*summary.refusals, *mixed))
     try:
+        refuse_mixed_temperatures({s.id: w.probe for s, w in runs}, tolerance_K)
         law, levels = fit_runs(windows, config)
     except FitRefused as error:
         refused = refusal(specimen, VISCOSITY, error, {})
         return Summary(summary.records, (), (*summary.refusals, refused))
     origins = next((r.origins for r in summary.records if r.key == VISCOSITY), ())
     method = windows[0].rule
-    laws = laws_of(law, levels, specimen, method, origins, _temperature_K(specimens))
+    laws = laws_of(law, levels, specimen, method, origins, _temperature_K(specimens, windows))
     return Summary(summary.records, laws, summary.refusals)
 
 
-def _temperature_K(runs: Sequence[Specimen]) -> float | None:
-    """Mean temperature of the runs, where the register states it of all of them `[K]`."""
-    stated = [s.numbers[_TEMPERATURE] for s in runs if _TEMPERATURE in s.numbers]
-    if len(stated) < len(runs):
-        return None
-    return math.fsum(t.value for t in stated) / len(stated)
-
-
-_TEMPERATURE = "temperature_K"
+def _temperature_K(runs: Sequence[Specimen], windows: Sequence[Windowed]) -> float | None:
+    """Mean temperature of the runs, by their probes or else as the register states it `[K]`."""
+    kelvin = [w.probe.mean_K for w in windows if w.probe is not None]
+    if len(kelvin) < len(windows):
+        stated = [stated_temperature_K(run) for run in runs]
+        kelvin = [k for k in stated if k is not None]
+    return math.fsum(kelvin) / len(kelvin) if len(kelvin) == len(runs) else None

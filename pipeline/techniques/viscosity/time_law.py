@@ -10,10 +10,27 @@ import numpy as np
 
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused, OutOfRange
-from deamat.core.laws import evaluate
+from deamat.core.laws import POLYNOMIAL, evaluate
 from deamat.core.records import Detail, Flag
 
 _BISECTIONS = 200
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """An answer with its standard uncertainties, all in its own unit.
+
+    Parameters
+    ----------
+    scatter : from the readings about the law, with `dof` degrees of freedom
+    calibration, thermal : from the instrument and from a correction of temperature
+    """
+
+    value: float
+    scatter: float
+    calibration: float
+    thermal: float
+    dof: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +42,7 @@ class TimeLaw:
     kind, coefficients, parts : as `core.laws.FORMS` takes them
     covariance : from the scatter of the readings, shape (p, p)
     drift : change of the coefficients for one standard uncertainty of the calibration, shape (p,)
+    thermal : the same for the activation energy by which readings were brought to one temperature
     valid : range of times `[s]`
     rates : range of nominal shear rates `[1/s]`; None for a Newtonian law
     rate_per_rpm_per_s : nominal shear rate over speed; None for a Newtonian law
@@ -38,6 +56,7 @@ class TimeLaw:
     parts: tuple[int, ...]
     covariance: FloatArray
     drift: FloatArray
+    thermal: FloatArray
     valid: tuple[float, float]
     rates: tuple[float, float] | None
     relative_error: float
@@ -63,15 +82,31 @@ class TimeLaw:
             )
         return evaluate(self.kind, self.coefficients, self.parts, time_s, self.usual_rate)
 
+    def at_rate(self, time_s: float, rate_per_s: float) -> tuple[float, FloatArray]:
+        """Give viscosity and its derivatives at any shear rate, also outside those measured.
+
+        Raises
+        ------
+        OutOfRange : a time outside `valid`
+        """
+        self.at(time_s)
+        return evaluate(self.kind, self.coefficients, self.parts, time_s, rate_per_s)
+
     @property
     def usual_rate(self) -> float | None:
         """Geometric middle of the rates measured throughout `[1/s]`, where it is best known."""
         return None if self.rates is None else math.sqrt(self.rates[0] * self.rates[1])
 
-    def errors(self, slopes: FloatArray) -> tuple[float, float]:
-        """Standard uncertainty from scatter, and from the calibration, of what has these slopes."""
+    def estimate(self, value: float, slopes: FloatArray) -> Estimate:
+        """Give what has these derivatives by the coefficients its uncertainties."""
         variance = float(slopes @ self.covariance @ slopes)
-        return math.sqrt(max(variance, 0.0)), abs(float(slopes @ self.drift))
+        return Estimate(
+            value,
+            math.sqrt(max(variance, 0.0)),
+            abs(float(slopes @ self.drift)),
+            abs(float(slopes @ self.thermal)),
+            self.dof,
+        )
 
     def time_of(self, times: float, start_s: float) -> tuple[float, FloatArray]:
         """Find when viscosity has grown by a factor since `start_s`.
@@ -129,12 +164,16 @@ class TimeLaw:
             low, high = (middle, high) if self.at(middle)[0] < value else (low, middle)
         return high
 
-    def _inverse(self, time_s: float, slopes: FloatArray) -> FloatArray:
-        """Turn derivatives of a viscosity into those of the time at which it is reached."""
+    def rise(self, time_s: float) -> float:
+        """Rate at which viscosity grows `[Pa.s/s]`."""
         low, high = self.valid
         step = 1e-4 * (high - low)
         before, after = max(low, time_s - step), min(high, time_s + step)
-        rise = (self.at(after)[0] - self.at(before)[0]) / (after - before)
+        return (self.at(after)[0] - self.at(before)[0]) / (after - before)
+
+    def _inverse(self, time_s: float, slopes: FloatArray) -> FloatArray:
+        """Turn derivatives of a viscosity into those of the time at which it is reached."""
+        rise = self.rise(time_s)
         if not rise > 0:
             raise FitRefused(
                 f"viscosity does not rise at {time_s / 3600:.4g} h, so that the time at which it "
@@ -166,6 +205,15 @@ def drift_of(
     weighted = slopes / sigma[:, None]
     size = np.linalg.norm(weighted, axis=0)
     return np.asarray(np.linalg.lstsq(weighted / size, shift / sigma, rcond=None)[0] / size)
+
+
+def growth(law: TimeLaw) -> FloatArray:
+    """Change of the coefficients when viscosity grows by a factor, per unit of the factor."""
+    c = law.coefficients.copy()
+    if law.kind == POLYNOMIAL:
+        return c
+    c[law.parts[0] if law.parts else 1 :] = 0.0
+    return c
 
 
 def relative_error(viscosity: FloatArray, law: FloatArray) -> float:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,7 +12,10 @@ from deamat.core.errors import FitRefused, OutOfRange
 from deamat.core.properties import property_key
 from deamat.core.quantity import Contribution, Quantity
 from deamat.core.records import Condition, Flag, MeasuredValue
+from deamat.estimators.mean import coverage_factor
+from deamat.estimators.selection import NORMAL
 from deamat.techniques.viscosity.config import (
+    AT_PRINTING_RATE,
     CONSISTENCY,
     CONSISTENCY_WIDE_CUP,
     DOUBLING,
@@ -21,21 +24,33 @@ from deamat.techniques.viscosity.config import (
     VISCOSITY,
     ViscosityConfig,
 )
+from deamat.techniques.viscosity.fitted import Fitted, OfLaw, OfReadings
+from deamat.techniques.viscosity.printing import decades_beyond, extrapolation
+from deamat.techniques.viscosity.temperature import temperature_at_K
 from deamat.techniques.viscosity.time_law import TimeLaw
 from deamat.techniques.viscosity.window import Windowed
 
-# A value and its derivatives by the coefficients of the law.
-Answer = Callable[[], tuple[float, FloatArray]]
+_TWICE = 2.0
+_SCATTER = "scatter about the law"
 
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """One value that is asked of a law: its key, conditions, what it means, how to get it."""
+    """One value that is asked of a run: its key, conditions, what it means, how to get it.
+
+    Parameters
+    ----------
+    of_law : from a law
+    of_readings : from the readings, where a law misses them; None where only a law tells it
+    at_minimum : start `[s]` that is the least reading of a run, and as uncertain as one reading
+    """
 
     key: str
     conditions: Mapping[str, Condition]
     meaning: str
-    answer: Answer
+    of_law: OfLaw
+    of_readings: OfReadings | None = None
+    at_minimum: float | None = None
 
 
 def asked_of(law: TimeLaw, window: Windowed, config: ViscosityConfig) -> list[Asked]:
@@ -46,15 +61,18 @@ def asked_of(law: TimeLaw, window: Windowed, config: ViscosityConfig) -> list[As
     of_rate = "" if rate is None else f" at the nominal shear rate {rate:.3g} 1/s"
     times = config.stated_times_s if window.whole else (start,)
     asked = [
-        Asked(VISCOSITY, {"time_s": t, **at_rate}, f"viscosity{of_rate}", _at(law, t))
-        for t in times
+        Asked(VISCOSITY, {"time_s": t, **at_rate}, f"viscosity{of_rate}", *_at(t)) for t in times
     ]
+    if drifts(window):
+        return [_at_its_temperature(one, window) for one in asked]
     asked.append(
         Asked(
             DOUBLING,
             {"time_s": start, **at_rate},
             f"time since mixing at which viscosity{of_rate} is twice that at `time_s`",
-            lambda: law.time_of(2.0, start),
+            lambda law: law.time_of(_TWICE, start),
+            lambda direct: direct.time_of(_TWICE, start),
+            None if window.whole else start,
         )
     )
     limit = config.limit_viscosity_Pas
@@ -64,7 +82,8 @@ def asked_of(law: TimeLaw, window: Windowed, config: ViscosityConfig) -> list[As
                 LIMIT,
                 at_rate,
                 f"time since mixing at which viscosity{of_rate} reaches {limit:g} Pa.s",
-                lambda: law.time_at(limit),
+                lambda law: law.time_at(limit),
+                lambda direct: direct.time_at(limit),
             )
         )
     if rate is not None:
@@ -72,15 +91,54 @@ def asked_of(law: TimeLaw, window: Windowed, config: ViscosityConfig) -> list[As
         low, high = law.valid
         for t in times:
             if low <= t <= high:
-                asked += _fluid(law, t)
-    return asked
+                asked += _fluid(t)
+                asked += _printing(law, t, config)
+    if window.probe is None:
+        return asked
+    steady = {"temperature_K": window.probe.mean_K}
+    return [replace(one, conditions={**one.conditions, **steady}) for one in asked]
 
 
-def _at(law: TimeLaw, time_s: float) -> Answer:
-    return lambda: law.at(time_s)
+def drifts(window: Windowed) -> bool:
+    """Whether the temperature moved and nothing corrects it."""
+    return window.probe is not None and window.probe.drifts
 
 
-def _fluid(law: TimeLaw, time_s: float) -> list[Asked]:
+def drifting(window: Windowed) -> FitRefused:
+    """Say why nothing that needs one temperature is given."""
+    told = [flag.detail for flag in window.readings.flags if flag.name == "temperature-drift"]
+    return FitRefused("; ".join(told) or "the temperature of the liquid drifts")
+
+
+def _at_its_temperature(asked: Asked, window: Windowed) -> Asked:
+    kelvin = temperature_at_K(window.readings, float(str(asked.conditions["time_s"])))
+    return replace(asked, conditions={**asked.conditions, "temperature_K": kelvin})
+
+
+def _at(time_s: float) -> tuple[OfLaw, OfReadings]:
+    return lambda law: law.at(time_s), lambda direct: direct.viscosity(time_s)
+
+
+def _printing(law: TimeLaw, time_s: float, config: ViscosityConfig) -> list[Asked]:
+    """Viscosity at the shear rate of printing, where the rates measured may be left so far."""
+    rate = config.printing_rate_per_s
+    if rate is None or law.rates is None or decades_beyond(law.rates, rate) > _limit(config):
+        return []
+    return [
+        Asked(
+            AT_PRINTING_RATE,
+            {"time_s": time_s, "rate_per_s": rate},
+            f"viscosity at {rate:g} 1/s ({config.printing_rate_source})",
+            lambda law: law.at_rate(time_s, rate),
+        )
+    ]
+
+
+def _limit(config: ViscosityConfig) -> float:
+    return config.extrapolation_decades
+
+
+def _fluid(time_s: float) -> list[Asked]:
     meanings = {
         CONSISTENCY: "K of mu_app = K rate^(n-1) at the nominal shear rate, as for a Newtonian "
         "liquid",
@@ -89,13 +147,13 @@ def _fluid(law: TimeLaw, time_s: float) -> list[Asked]:
         "wide cup",
     }
     return [
-        Asked(key, {"time_s": time_s}, meaning, _part(law, key, time_s))
+        Asked(key, {"time_s": time_s}, meaning, _part(key, time_s))
         for key, meaning in meanings.items()
     ]
 
 
-def _part(law: TimeLaw, key: str, time_s: float) -> Answer:
-    return lambda: fluid_part(law, key, time_s)
+def _part(key: str, time_s: float) -> OfLaw:
+    return lambda law: fluid_part(law, key, time_s)
 
 
 def fluid_part(law: TimeLaw, key: str, time_s: float) -> tuple[float, FloatArray]:
@@ -125,29 +183,42 @@ def fluid_part(law: TimeLaw, key: str, time_s: float) -> tuple[float, FloatArray
 
 
 def measured(
-    asked: Asked, law: TimeLaw, method: str, flags: tuple[Flag, ...], lines: tuple[int, int]
+    asked: Asked,
+    fitted: Fitted,
+    config: ViscosityConfig,
+    method: str,
+    flags: tuple[Flag, ...],
+    lines: tuple[int, int],
 ) -> MeasuredValue:
-    """Answer with a budget: scatter about the law, and the calibration that all runs share.
+    """Answer with a budget: scatter about the laws, and the calibration that all runs share.
 
     Raises
     ------
     FitRefused : the law does not give this value
     """
+    law = fitted.law
     try:
-        value, slopes = asked.answer()
+        found = fitted.answer(asked.of_law, asked.of_readings)
+        budget = [Contribution(_SCATTER, found.scatter * _normal(found.dof), shared=False)]
+        if asked.at_minimum is not None and fitted.direct is None:
+            start = law.at(asked.at_minimum)[0]
+            u = _TWICE * law.relative_error * start / law.rise(min(found.value, law.valid[1]))
+            budget.append(Contribution("reading at the minimum", u, shared=False))
     except OutOfRange as error:
         raise FitRefused(str(error)) from error
-    scatter, calibration = law.errors(slopes)
-    budget: tuple[Contribution, ...] = (
-        Contribution("scatter about the law", scatter, shared=False),
-    )
-    if calibration > 0:
-        budget += (Contribution("viscometer calibration", calibration, shared=True),)
+    if found.calibration > 0:
+        budget.append(Contribution("viscometer calibration", found.calibration, shared=True))
+    if found.thermal > 0:
+        budget.append(Contribution("correction of temperature", found.thermal, shared=True))
     rate = law.rate_per_rpm_per_s
+    if asked.key == AT_PRINTING_RATE and law.rates is not None:
+        line, flag = extrapolation(law.rates, found.value, config)
+        budget += line
+        flags += flag
     return MeasuredValue(
         key=asked.key,
-        quantity=Quantity.from_budget(value, property_key(asked.key).unit, budget),
-        budget=budget,
+        quantity=Quantity.from_budget(found.value, property_key(asked.key).unit, tuple(budget)),
+        budget=tuple(budget),
         method=f"{asked.meaning}; {method}",
         conditions=asked.conditions,
         lines=lines,
@@ -160,6 +231,11 @@ def measured(
         },
         flags=flags,
     )
+
+
+def _normal(dof: float) -> float:
+    """Widen a standard uncertainty of few degrees of freedom to what 1.96 of it stand for."""
+    return coverage_factor(dof) / NORMAL
 
 
 def _round(value: float) -> float:

@@ -8,9 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from deamat.core.errors import FitRefused
-from deamat.core.records import Flag
+from deamat.core.records import Flag, Specimen
 from deamat.techniques.viscosity.config import ViscosityConfig
-from deamat.techniques.viscosity.readings import Readings, joined
+from deamat.techniques.viscosity.readings import Readings, joined, speeds_alternate
+from deamat.techniques.viscosity.temperature import Probe, at_one_temperature
+from deamat.techniques.viscosity.trusted import until_fall, without_isolated
 
 _INTERVAL_CHANGE = 2.0  # a sampling interval that grows by more than this is another method
 
@@ -25,6 +27,7 @@ class Windowed:
     rule : in words
     start_s : where stated times and doubling count from `[s]`
     whole : the configured window was used, not the rule for short runs
+    probe : temperature of the liquid; None where no probe was read
     """
 
     readings: Readings
@@ -32,15 +35,50 @@ class Windowed:
     rule: str
     start_s: float
     whole: bool
+    probe: Probe | None = None
 
 
-def windowed(readings: Readings, config: ViscosityConfig) -> Windowed:
-    """Cut a run to the configured window, or from its minimum on if it ends before that begins.
+def windowed(
+    readings: Readings, config: ViscosityConfig, stated_K: float | None = None
+) -> Windowed:
+    """Cut a run to the configured window, and to readings that the liquid caused.
+
+    A run that ends before the window begins is taken from its minimum on. Readings far off their
+    neighbours are left out, a fall to the end of the run is cut off, and a temperature that moved
+    is corrected where it can be.
+
+    Parameters
+    ----------
+    stated_K : temperature of the run as the register states it; None where it does not
 
     Raises
     ------
     FitRefused : fewer than `min_readings` are left
     """
+    window = _cut(readings, config)
+    steady = not speeds_alternate(window.readings)  # else neighbours are of other shear rates
+    sound = without_isolated(window.readings) if steady else window.readings
+    one, probe = at_one_temperature(sound, config, stated_K)
+    kept, fall_s = until_fall(one) if steady else (one, None)
+    _enough(kept, config, window.rule)
+    low, high = window.valid
+    end = high if fall_s is None else min(high, fall_s)
+    return replace(window, readings=kept, probe=probe, valid=(low, end))
+
+
+def stated_temperature_K(specimen: Specimen) -> float | None:
+    """Temperature of a run as its register states it `[K]`; None where it does not."""
+    stated = specimen.numbers.get(_TEMPERATURE)
+    condition = specimen.conditions.get(_TEMPERATURE)
+    if stated is not None:
+        return stated.value
+    return condition if isinstance(condition, float) else None
+
+
+_TEMPERATURE = "temperature_K"
+
+
+def _cut(readings: Readings, config: ViscosityConfig) -> Windowed:
     if len(readings) == 0:
         raise FitRefused(
             "no reading is left: none is within the torque window; change rotor or speed"

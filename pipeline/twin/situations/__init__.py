@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from deamat.twin.situations import breakdown, nanoindentation, permittivity, tension
+from deamat.twin.situations import breakdown, nanoindentation, permittivity, tension, viscosity
 from deamat.twin.situations.situation import Situation
 
 SITUATIONS: dict[str, Situation] = {
@@ -12,5 +12,6 @@ SITUATIONS: dict[str, Situation] = {
         *permittivity.SITUATIONS,
         *breakdown.SITUATIONS,
         *nanoindentation.SITUATIONS,
+        *viscosity.SITUATIONS,
     )
 }

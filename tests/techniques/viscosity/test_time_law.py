@@ -214,7 +214,9 @@ def test_a_doubling_beyond_the_law_is_refused_with_what_was_found() -> None:
     reasons = {r.key: r.reason for r in measured.refusals}
     assert reasons == {
         "viscosity_doubling_time": "at the end of the law, 12 h after mixing, viscosity is 1.5 "
-        "times that at 1 h, not 2 times; measure longer"
+        "times that at 1 h, not 2 times; measure longer",
+        "viscosity_at_printing_rate": "the law knows the shear rate of its readings alone, so "
+        "nothing tells what viscosity is at 95 1/s; sweep the speeds, or measure a flow curve",
     }
 
 
