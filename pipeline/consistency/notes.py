@@ -6,8 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TypeVar
 
+from deamat.consistency.dates import day_of
 from deamat.core.flags import Flag, merged
-from deamat.core.records import Law, Origin, PropertyRecord, Summary
+from deamat.core.records import Law, Origin, PropertyRecord, Specimen, Summary
 
 E = TypeVar("E", PropertyRecord, Law)
 
@@ -25,6 +26,35 @@ def noted(summary: Summary, flags: Mapping[str, Sequence[Flag]]) -> Summary:
         summary,
         records=tuple(_with(record, flags) for record in summary.records),
         laws=tuple(_with(law, flags) for law in summary.laws),
+    )
+
+
+def with_circumstances(summary: Summary, specimens: Mapping[str, Specimen]) -> Summary:
+    """Say at each origin who tested it with what, when, how warm and how humid, as recorded."""
+    return replace(
+        summary,
+        records=tuple(_told(record, specimens) for record in summary.records),
+        laws=tuple(_told(law, specimens) for law in summary.laws),
+    )
+
+
+def _told(entry: E, specimens: Mapping[str, Specimen]) -> E:
+    return replace(entry, origins=tuple(_circumstances(o, specimens) for o in entry.origins))
+
+
+def _circumstances(origin: Origin, specimens: Mapping[str, Specimen]) -> Origin:
+    if origin.specimen not in specimens:
+        return origin
+    row = specimens[origin.specimen]
+    tested = day_of(row, "tested_on")
+    temperature, humidity = (row.numbers.get(name) for name in ("temperature_K", "humidity"))
+    return replace(
+        origin,
+        instrument=row.notes.get("instrument"),
+        operator=row.notes.get("operator"),
+        tested_on=None if tested is None else tested.isoformat(),
+        temperature_K=None if temperature is None else temperature.value,
+        humidity=None if humidity is None else humidity.value,
     )
 
 

@@ -20,6 +20,8 @@ from deamat.core.toml import parse_toml
 
 M = TypeVar("M", bound=BaseModel)
 
+_POOLING = "conditions"  # the section of methods.toml that is of no technique
+
 
 class Material(Declared):
     """One material of `config/materials.toml`: the name people read."""
@@ -45,6 +47,20 @@ class Exclusions(Declared):
     """`config/exclusions.toml`."""
 
     exclude: tuple[Exclusion, ...] = ()
+
+
+class Pooling(Declared):
+    """`[conditions]` in `config/methods.toml`: which specimens are of one state."""
+
+    temperature_tolerance_K: float = Field(
+        default=3.0, ge=0, description="specimens whose temperatures differ by more are not pooled"
+    )
+    humidity_tolerance: float = Field(
+        default=0.2, ge=0, description="specimens whose humidities differ by more are not pooled"
+    )
+
+
+_USUAL_POOLING = Pooling()
 
 
 class _Materials(RootModel[Mapping[str, Material]]):
@@ -79,6 +95,7 @@ class Config:
     exclusions: Exclusions
     methods: Mapping[str, BaseModel]
     files: Mapping[str, str]
+    conditions: Pooling = _USUAL_POOLING
 
     def name_of(self, material: str) -> str:
         """Return the name people read; the id itself where none is declared."""
@@ -124,9 +141,11 @@ def load_config(folder: Path, techniques: Mapping[str, type[BaseModel]]) -> Conf
             raise ConfigError(f"{path}: {error}") from error
 
     sections = read("methods.toml")
+    pooling = sections.pop(_POOLING, {})
     for section in sections:
         if section not in techniques:
-            near = difflib.get_close_matches(section, techniques, n=1) or sorted(techniques)
+            known = [*techniques, _POOLING]
+            near = difflib.get_close_matches(section, known, n=1) or sorted(known)
             raise ConfigError(
                 f"{folder / 'methods.toml'}: no technique is called {section!r}; "
                 f"nearest: {', '.join(near)}"
@@ -140,6 +159,7 @@ def load_config(folder: Path, techniques: Mapping[str, type[BaseModel]]) -> Conf
             for key, cls in techniques.items()
         },
         files=files,
+        conditions=validate(Pooling, pooling, folder / "methods.toml", _POOLING),
     )
 
 

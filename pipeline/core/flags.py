@@ -79,6 +79,7 @@ SEVERITY_OF: dict[str, Severity] = {
     "not-in-every-reading": "warning",
     "not-one-viscosity": "warning",
     "not-positive": "warning",
+    "not-recorded": "warning",
     "other-frequency": "info",
     "outlier": "warning",
     "outlying-point": "warning",

@@ -214,6 +214,11 @@ class Origin:
     reader: Annotated[str | None, "Format that read the file."]
     technique: Annotated[str, SAID, "Technique that measured it."]
     diagnostics: Mapping[str, Detail] = field(default_factory=dict)
+    instrument: Annotated[str | None, "Instrument, as the register says it."] = None
+    operator: Annotated[str | None, "Who tested it, as the register says it."] = None
+    tested_on: Annotated[str | None, "Day of the test, as YYYY-MM-DD."] = None
+    temperature_K: Annotated[float | None, "Temperature of this specimen."] = None
+    humidity: Annotated[float | None, "Relative humidity at its test, 0 to 1."] = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

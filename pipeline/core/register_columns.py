@@ -17,7 +17,9 @@ from deamat.core.units import UNITS, known, si_factor
 
 CONDITION_COLUMNS = ("age", "cure", "electrode")
 # Text columns of any technique that something reads.
-_TEXT = ("specimen", "material", "file", "format", "instrument", "cured_on", "tested_on")
+_TEXT = (
+    *("specimen", "material", "file", "format", "instrument", "operator", "cured_on", "tested_on"),
+)
 
 # How each number is usually written. The stem of the first ones always carries a unit:
 # `diameter_furlong` and a bare `diameter` are slips. `mass_flow` may be a note.

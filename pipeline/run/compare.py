@@ -16,7 +16,7 @@ from deamat.core.flags import Flag
 from deamat.core.register import split_sheet
 from deamat.formats.detect import detect
 from deamat.formats.rawfile import RawFile, read_raw
-from deamat.run.build_cache import digest, key_of
+from deamat.run.build_cache import key_of
 from deamat.run.measure import Measured, RunContext
 from deamat.run.work import Reduced
 
@@ -66,7 +66,4 @@ def _with(one: Measured, flags: Sequence[Flag], copied: RawFileError | None) -> 
     if copied is not None and one.reduced is not None:
         rejected = Reduced(None, copied, one.reduced.reader)
         return replace(one, key=key_of({"key": one.key, "copy": str(copied)}), reduced=rejected)
-    if not flags:
-        return one
-    told = tuple(dict.fromkeys(flags))
-    return replace(one, key=key_of({"key": one.key, "flags": digest(told)}), flags=told)
+    return one.noticed(*flags)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from graphlib import TopologicalSorter
 from typing import TypeVar
 
-from deamat.consistency.notes import noted
-from deamat.core.config import Config
+from deamat.consistency.notes import noted, with_circumstances
+from deamat.consistency.states import states, under
+from deamat.core.config import Config, Pooling
 from deamat.core.config import digest as config_digest
 from deamat.core.flags import Flag
 from deamat.core.instruments import Machine
@@ -26,6 +27,7 @@ from deamat.run.work import FILES_PER_TASK, Reduced, Task, attempt_one, lost, so
 from deamat.run.workers import Workers
 
 E = TypeVar("E", PropertyRecord, Law)
+_AS_WARM_K = 5.0  # two techniques are used on two days
 Progress = Callable[[str, int, int], None]
 
 
@@ -44,6 +46,14 @@ class Measured:
     reduced: Reduced | None
     failure: Failure | None = None
     flags: tuple[Flag, ...] = ()
+
+    def noticed(self, *flags: Flag) -> Measured:
+        """Add flags; the key changes with them."""
+        told = tuple(dict.fromkeys((*self.flags, *flags)))
+        if told == self.flags:
+            return self
+        key = STALE if self.key == STALE else key_of({"key": self.key, "flags": digest(told)})
+        return replace(self, key=key, flags=told)
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,17 +155,17 @@ def summarise(
     technique: AnyTechnique, measured: Sequence[Measured], run: RunContext
 ) -> list[Group]:
     """Summarise each group of specimens; only what is stale is computed again."""
-    groups: dict[tuple[str, str, tuple[tuple[str, Condition], ...]], list[Measured]] = {}
-    for one in measured:
-        s = one.specimen
-        conditions = tuple(sorted(s.conditions.items()))
-        groups.setdefault((s.campaign, s.material, conditions), []).append(one)
+    groups = _groups(measured, run.config.conditions)
     result = []
     config = run.config.methods[technique.key]
     for described in sorted(groups, key=repr):
         campaign, material, conditions = described
         members = groups[described]
-        good = tuple(m.reduced.measurement for m in members if m.reduced and m.reduced.measurement)
+        good = tuple(
+            under(m.reduced.measurement, conditions)
+            for m in members
+            if m.reduced and m.reduced.measurement
+        )
         bare = Group(campaign, material, technique.key, conditions, "", good, None)
         parts = {
             **run.stages.parts(f"summary {technique.key}"),
@@ -180,8 +190,7 @@ def summarise(
                 run.unmade |= {(*place, property_) for property_ in technique.yields}
         else:
             context = Context(config, Machine(), {}, laws=laws)
-            flags = {m.specimen.id: m.flags for m in members}
-            made = _summary(technique, bare, context, flags) if good else None
+            made = _summary(technique, bare, context, members) if good else None
             if isinstance(made, Failure):
                 summary, key = None, run.fail(made)
             else:
@@ -193,16 +202,37 @@ def summarise(
     return result
 
 
+def _groups(
+    measured: Sequence[Measured], pooling: Pooling
+) -> dict[tuple[str, str, tuple[tuple[str, Condition], ...]], list[Measured]]:
+    """Group specimens by campaign, material and conditions; temperatures far apart stay apart."""
+    alike: dict[tuple[object, ...], list[Measured]] = {}
+    for one in measured:
+        s = one.specimen
+        place = (s.campaign, s.material, *sorted(s.conditions.items()))
+        alike.setdefault(place, []).append(one)
+    groups = {}
+    for members in alike.values():
+        by_id = {m.specimen.id: m for m in members}
+        for state in states([m.specimen for m in members], pooling):
+            mine = {s.id: by_id[s.id] for s in state.specimens}
+            for who, flag in state.unrecorded:
+                mine[who] = mine[who].noticed(flag)
+            first = members[0].specimen
+            groups[first.campaign, first.material, state.conditions] = list(mine.values())
+    return groups
+
+
 def _summary(
-    technique: AnyTechnique,
-    group: Group,
-    context: Context,
-    flags: Mapping[str, Sequence[Flag]],
+    technique: AnyTechnique, group: Group, context: Context, members: Sequence[Measured]
 ) -> Summary | Failure:
-    return attempt(
-        "summary", group.subject, group.files,
-        lambda: noted(technique.summarise(group.measurements, context), flags),
-    )  # fmt: skip
+    rows = {m.specimen.id: m.specimen for m in members}
+
+    def make() -> Summary:
+        made = technique.summarise(group.measurements, context)
+        return with_circumstances(noted(made, {m.specimen.id: m.flags for m in members}), rows)
+
+    return attempt("summary", group.subject, group.files, make)
 
 
 def _laws(technique: AnyTechnique, laws: Sequence[Law]) -> dict[str, Law]:
@@ -257,13 +287,23 @@ def needs_met(
 
 
 def _needed(key: str, specimen: Specimen, records: Sequence[PropertyRecord]) -> Quantity | None:
-    """Find what a technique needs of its material: at the same age, else at the usual one."""
+    """Find what a technique needs of its material: at the same age, else at the usual one.
+
+    Of several at that age, the one at the temperature of the specimen.
+    """
     age = REFERENCE_AGE
     if "age" in specimen.conditions:
         age = str(specimen.conditions["age"])
     found = [r for r in records if r.key == key]
     same = [r for r in found if "age" in r.conditions and r.conditions["age"] == age] or found
+    if len(same) > 1:
+        same = [r for r in same if _as_warm(r, specimen)]
     return same[0].quantity if len(same) == 1 else None
+
+
+def _as_warm(record: PropertyRecord, specimen: Specimen) -> bool:
+    own, its = specimen.numbers.get("temperature_K"), record.conditions.get("temperature_K")
+    return own is not None and isinstance(its, float) and abs(own.value - its) <= _AS_WARM_K
 
 
 def _run(

@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given, settings
 
 from deamat.core.properties import CONDITIONS, PROPERTIES
-from deamat.core.records import Law, PropertyRecord, Refusal
+from deamat.core.quantity import Contribution
+from deamat.core.records import Law, Origin, PropertyRecord, Refusal
 from deamat.core.schema import fields_of
 from deamat.materials.card import SCHEMA, MaterialCard
 from deamat.materials.json_schema import schema_text
@@ -45,7 +46,12 @@ def test_every_object_of_the_schema_is_closed_and_complete() -> None:
     closed = [_SCHEMA, *_SCHEMA["$defs"].values()]
     objects = [d for d in closed if d.get("type") == "object" and "required" in d]
     assert len(objects) == 7
-    facts = {f.name for cls in (PropertyRecord, Law, Refusal) for f in fields_of(cls) if f.optional}
+    facts = {
+        f.name
+        for cls in (PropertyRecord, Law, Refusal, Origin, Contribution)
+        for f in fields_of(cls)
+        if f.optional
+    }
     assert "area_ratio_limit" in facts
     for definition in objects:
         assert definition["additionalProperties"] is False
