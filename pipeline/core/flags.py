@@ -111,6 +111,7 @@ SEVERITY_OF: dict[str, Severity] = {
     "specimens-refused": "warning",
     "speed-disagrees": "serious",
     "squeezed-film": "warning",
+    "starts-in-contact": "warning",
     "stopped-early": "warning",
     "survivors": "serious",
     "swapped-files": "serious",
