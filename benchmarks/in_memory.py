@@ -7,7 +7,8 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from deamat.core.config import Config
-from deamat.core.records import Law, Measurement, PropertyRecord, Specimen, Summary
+from deamat.core.recording import Specimen
+from deamat.core.records import Law, Measurement, PropertyRecord, Summary
 from deamat.core.register import read_register
 from deamat.core.technique import AnyTechnique, Context
 from deamat.formats.detect import detect

@@ -51,7 +51,7 @@ from benchmarks.timing import (
 from deamat.core.arrays import FloatArray
 from deamat.core.instruments import Machine
 from deamat.core.quantity import Quantity
-from deamat.core.records import Specimen
+from deamat.core.recording import Specimen
 from deamat.core.technique import AnyTechnique, Context
 from deamat.formats.format import Format
 from deamat.formats.rawfile import RawFile, read_raw

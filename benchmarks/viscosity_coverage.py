@@ -15,7 +15,8 @@ import numpy as np
 
 from benchmarks.coverage_truth import truth_of, viscosity_at
 from deamat.core.arrays import FloatArray
-from deamat.core.records import Law, Recording, Source, Specimen
+from deamat.core.recording import Recording, Source, Specimen
+from deamat.core.records import Law
 from deamat.core.technique import Context
 from deamat.techniques import viscosity
 from deamat.techniques.viscosity.config import ViscosityConfig

@@ -76,7 +76,7 @@ def judge(good: Outcome, spoilt: Outcome) -> Judged:
     before, after = list(answers(good)), list(answers(spoilt, good.laws))
     verdicts = [_verdict(one, before, after, spoilt) for one in before]
     worst = max(verdicts, key=lambda j: VERDICTS.index(j.verdict), default=Judged("right"))
-    news = [reason for reason in spoilt.rejected if reason not in good.rejected]
+    news = sorted(set(spoilt.rejected) - set(good.rejected))
     if worst.verdict == "right" and news:
         return Judged("rejected", news[0])
     return worst

@@ -11,7 +11,7 @@ from benchmarks.stability.cells import Draw, Estimator, Failure, Told
 from deamat.core.arrays import FloatArray
 from deamat.core.instruments import Machine
 from deamat.core.quantity import Quantity
-from deamat.core.records import Recording, Source, Specimen
+from deamat.core.recording import Recording, Source, Specimen
 from deamat.core.technique import Context
 from deamat.estimators.mean import coverage_factor
 from deamat.techniques.compression import TECHNIQUE

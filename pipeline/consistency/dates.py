@@ -7,7 +7,7 @@ from datetime import date
 from deamat.core.dates import read_date, stated_age
 from deamat.core.flags import Flag
 from deamat.core.properties import REFERENCE_AGE
-from deamat.core.records import Specimen
+from deamat.core.recording import Specimen
 
 _DAYS_OFF, _PART_OFF = 3.0, 0.35  # an age is rounded; months differ
 _USUAL_STATE_DAYS = 45.0  # up to which a specimen is tested `after cure`

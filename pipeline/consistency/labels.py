@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping, Sequence
 
 from deamat.core.flags import Flag
-from deamat.core.records import Specimen
+from deamat.core.recording import Specimen
 
 _FEWEST = 4  # characters of a name that tells something: `3` or `S1` may count anything
 

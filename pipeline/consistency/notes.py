@@ -8,7 +8,8 @@ from typing import TypeVar
 
 from deamat.consistency.dates import day_of
 from deamat.core.flags import Flag, merged
-from deamat.core.records import Law, Origin, PropertyRecord, Specimen, Summary
+from deamat.core.recording import Specimen
+from deamat.core.records import Law, Origin, PropertyRecord, Summary
 
 E = TypeVar("E", PropertyRecord, Law)
 

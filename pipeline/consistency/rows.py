@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 
 from deamat.consistency.dates import dates_of_row
 from deamat.core.flags import Flag
-from deamat.core.records import Specimen
+from deamat.core.recording import Specimen
 from deamat.core.register_bounds import usual
 
 _FEWEST = 4  # characters of an id that names one specimen: every register has an `s1`

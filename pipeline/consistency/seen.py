@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from deamat.consistency.statements import against_row, label_of
 from deamat.core.flags import Flag
-from deamat.core.records import Recording, Specimen
+from deamat.core.recording import Recording, Specimen
 from deamat.estimators.rows import Sketch, has_noise, sketch
 
 _SET = frozenset(("time_s", "frequency_Hz", "shear_rate_per_s"))  # by the instrument

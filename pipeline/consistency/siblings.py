@@ -8,7 +8,7 @@ from itertools import combinations
 from statistics import median
 
 from deamat.core.flags import Flag
-from deamat.core.records import Specimen
+from deamat.core.recording import Specimen
 
 _FEWEST = 3  # specimens from which one can stand apart
 _APART = 1.35  # times the siblings' median, either way

@@ -13,7 +13,7 @@ from deamat.consistency.dates import day_of
 from deamat.core.arrays import FloatArray
 from deamat.core.dates import read_date
 from deamat.core.flags import Flag
-from deamat.core.records import Recording, Specimen
+from deamat.core.recording import Recording, Specimen
 from deamat.core.units import known, si_factor
 
 _OFF = 0.1  # relative: an exporter may have been given the nominal length

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 from deamat.core.config import Pooling
 from deamat.core.flags import Flag
-from deamat.core.records import Condition, Measurement, Specimen
+from deamat.core.recording import Specimen
+from deamat.core.records import Condition, Measurement
 
 _ROUNDING = 1e-9
 

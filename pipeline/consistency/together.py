@@ -14,7 +14,8 @@ from deamat.consistency.siblings import siblings_of_rows
 from deamat.consistency.swaps import swapped_files
 from deamat.core.errors import RawFileError
 from deamat.core.flags import Flag
-from deamat.core.records import Measurement, Source, Specimen
+from deamat.core.recording import Source, Specimen
+from deamat.core.records import Measurement
 from deamat.core.register import SHEET
 
 _HINT = "exclude the wrong one in config/exclusions.toml, with the reason"

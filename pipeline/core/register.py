@@ -22,7 +22,8 @@ from deamat.core.errors import RawFileError
 from deamat.core.instruments import Gauge
 from deamat.core.number_grammar import is_number
 from deamat.core.quantity import Quantity
-from deamat.core.records import Condition, Specimen
+from deamat.core.recording import Specimen
+from deamat.core.records import Condition
 from deamat.core.register_bounds import possible
 from deamat.core.register_columns import CONDITION_COLUMNS, Column, numeric_columns
 from deamat.core.slug import Spellings, label_fault, nearest_label, nearest_slug, slug_fault

@@ -11,7 +11,8 @@ from typing_extensions import TypeVar  # with a default, which typing has from P
 
 from deamat.core.instruments import Machine
 from deamat.core.quantity import Quantity
-from deamat.core.records import Law, Measurement, Recording, Result, Specimen, Summary
+from deamat.core.recording import Recording, Specimen
+from deamat.core.records import Law, Measurement, Result, Summary
 from deamat.core.register import SPECIMENS, RegisterForm
 
 if TYPE_CHECKING:

@@ -26,7 +26,7 @@ None.
 
 from __future__ import annotations
 
-from deamat.core.records import Recording
+from deamat.core.recording import Recording
 from deamat.formats.cells import Dialect
 from deamat.formats.columns import Reader
 from deamat.formats.format import Format

@@ -29,7 +29,7 @@ Every header line under its key, value and unit joined by a space.
 
 from __future__ import annotations
 
-from deamat.core.records import Recording
+from deamat.core.recording import Recording
 from deamat.formats.cells import Dialect
 from deamat.formats.columns import Reader
 from deamat.formats.format import MECHANICS, Format

@@ -39,7 +39,7 @@ import re
 from collections.abc import Sequence
 
 from deamat.core.errors import RawFileError
-from deamat.core.records import Recording
+from deamat.core.recording import Recording
 from deamat.formats.cells import Dialect
 from deamat.formats.format import Format
 from deamat.formats.lcr_sweep import (

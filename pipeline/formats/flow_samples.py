@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from deamat.core.arrays import FloatArray
-from deamat.core.records import Recording, Source
+from deamat.core.recording import Recording, Source
 from deamat.formats.rawfile import RawFile
 
 SEPARATOR = "; "

@@ -28,7 +28,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from deamat.core.records import Flag, Recording
+from deamat.core.recording import Recording
+from deamat.core.records import Flag
 from deamat.formats.cells import Dialect, looks_numeric
 from deamat.formats.columns import Reader
 from deamat.formats.format import Format

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from deamat.core.records import Recording
+from deamat.core.recording import Recording
 from deamat.formats.rawfile import Head, RawFile
 
 MECHANICS = ("compression", "tension")

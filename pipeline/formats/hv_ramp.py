@@ -37,7 +37,7 @@ from dataclasses import dataclass, replace
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import RawFileError
 from deamat.core.number_grammar import is_number
-from deamat.core.records import Recording
+from deamat.core.recording import Recording
 from deamat.core.register_columns import split_unit
 from deamat.core.units import known, si_factor
 from deamat.formats.cells import Dialect

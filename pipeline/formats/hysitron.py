@@ -32,7 +32,7 @@ Metadata
 from __future__ import annotations
 
 from deamat.core.errors import RawFileError
-from deamat.core.records import Recording
+from deamat.core.recording import Recording
 from deamat.formats.cells import Dialect
 from deamat.formats.columns import Reader
 from deamat.formats.format import Format

@@ -37,7 +37,7 @@ from __future__ import annotations
 
 import re
 
-from deamat.core.records import Recording
+from deamat.core.recording import Recording
 from deamat.formats.cells import Dialect
 from deamat.formats.format import Format
 from deamat.formats.lcr_sweep import (

@@ -38,7 +38,7 @@ import re
 from collections.abc import Sequence
 
 from deamat.core.errors import RawFileError
-from deamat.core.records import Recording
+from deamat.core.recording import Recording
 from deamat.core.register_columns import split_unit
 from deamat.core.units import known, si_factor
 from deamat.formats.cells import Dialect

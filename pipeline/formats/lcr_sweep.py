@@ -15,7 +15,8 @@ import numpy as np
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import RawFileError
 from deamat.core.number_grammar import NUMBER, is_number
-from deamat.core.records import Flag, Recording, Source
+from deamat.core.recording import Recording, Source
+from deamat.core.records import Flag
 from deamat.core.units import UnknownUnit, si_factor
 from deamat.formats.cells import OVER_RANGE, Dialect, read_cells
 from deamat.formats.rawfile import RawFile

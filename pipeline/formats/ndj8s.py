@@ -33,7 +33,7 @@ from __future__ import annotations
 import re
 
 from deamat.core.errors import RawFileError
-from deamat.core.records import Recording
+from deamat.core.recording import Recording
 from deamat.core.units import to_si
 from deamat.formats.format import Format
 from deamat.formats.rawfile import RawFile

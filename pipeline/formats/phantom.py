@@ -30,7 +30,7 @@ Every note as text: `key: value` under its key, a line without a value under its
 
 from __future__ import annotations
 
-from deamat.core.records import Recording
+from deamat.core.recording import Recording
 from deamat.formats.cells import Dialect
 from deamat.formats.columns import Reader
 from deamat.formats.documentation import stated_units

@@ -36,7 +36,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from deamat.core.errors import RawFileError
-from deamat.core.records import Recording
+from deamat.core.recording import Recording
 from deamat.formats.choice import Choice, choose
 from deamat.formats.format import Format
 from deamat.formats.plain_rows import recording_of

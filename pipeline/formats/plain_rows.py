@@ -10,7 +10,8 @@ import numpy as np
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import RawFileError
 from deamat.core.number_grammar import is_number
-from deamat.core.records import Flag, Recording, Source
+from deamat.core.recording import Recording, Source
+from deamat.core.records import Flag
 from deamat.formats.cells import OVER_RANGE, Dialect, looks_numeric, text_row, why_not
 from deamat.formats.choice import Choice, Taken
 from deamat.formats.decimals import Ambiguous, decimal_mark, normal, number_text

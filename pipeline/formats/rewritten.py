@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from deamat.core.errors import RawFileError
-from deamat.core.records import Recording
+from deamat.core.recording import Recording
 from deamat.formats.plain import Text, complete_in, refused
 from deamat.formats.plain_rows import recording_of
 from deamat.formats.rawfile import RawFile

@@ -31,7 +31,7 @@ from __future__ import annotations
 import re
 
 from deamat.core.errors import RawFileError
-from deamat.core.records import Recording, Source
+from deamat.core.recording import Recording, Source
 from deamat.core.units import UnknownUnit, si_factor
 from deamat.formats.cells import Dialect, looks_numeric, read_cells
 from deamat.formats.format import Format

@@ -29,7 +29,7 @@ from __future__ import annotations
 import numpy as np
 
 from deamat.core.errors import RawFileError
-from deamat.core.records import Recording
+from deamat.core.recording import Recording
 from deamat.formats.cells import Dialect, read_cells
 from deamat.formats.flow_samples import long_recording
 from deamat.formats.format import Format

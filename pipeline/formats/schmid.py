@@ -30,7 +30,7 @@ from __future__ import annotations
 import numpy as np
 
 from deamat.core.errors import RawFileError
-from deamat.core.records import Recording
+from deamat.core.recording import Recording
 from deamat.core.units import UnknownUnit, si_factor
 from deamat.formats.cells import Dialect
 from deamat.formats.flow_samples import SEPARATOR, long_recording

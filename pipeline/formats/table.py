@@ -9,7 +9,8 @@ import numpy as np
 
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import RawFileError
-from deamat.core.records import Flag, Recording, Source
+from deamat.core.recording import Recording, Source
+from deamat.core.records import Flag
 from deamat.formats.cells import looks_numeric
 from deamat.formats.columns import Columns, Reader, columns_of
 from deamat.formats.header import Layout, notes

@@ -28,7 +28,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from deamat.core.errors import RawFileError
-from deamat.core.records import Recording
+from deamat.core.recording import Recording
 from deamat.formats.format import Format
 from deamat.formats.rawfile import Head, RawFile
 from deamat.formats.rewritten import lines_of, read_rewritten

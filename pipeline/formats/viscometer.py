@@ -13,7 +13,8 @@ import numpy as np
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import RawFileError
 from deamat.core.number_grammar import is_number
-from deamat.core.records import Flag, Recording, Source
+from deamat.core.recording import Recording, Source
+from deamat.core.records import Flag
 from deamat.core.units import to_si
 from deamat.formats.rawfile import RawFile
 

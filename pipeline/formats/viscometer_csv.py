@@ -40,7 +40,7 @@ import numpy as np
 
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import RawFileError
-from deamat.core.records import Recording
+from deamat.core.recording import Recording
 from deamat.core.units import to_si
 from deamat.formats.format import Format
 from deamat.formats.rawfile import RawFile

@@ -36,7 +36,8 @@ from dataclasses import replace
 from datetime import date, datetime, time, timedelta
 
 from deamat.core.errors import RawFileError
-from deamat.core.records import Flag, Recording
+from deamat.core.recording import Recording
+from deamat.core.records import Flag
 from deamat.formats.choice import Choice
 from deamat.formats.format import Format
 from deamat.formats.plain import Text, complete_in, refused

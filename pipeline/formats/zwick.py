@@ -34,7 +34,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from deamat.core.records import Flag, Recording
+from deamat.core.recording import Recording
+from deamat.core.records import Flag
 from deamat.formats.cells import Dialect
 from deamat.formats.columns import Reader
 from deamat.formats.format import Format

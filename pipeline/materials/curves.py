@@ -22,7 +22,8 @@ from numpy.typing import NDArray
 
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import PipelineError
-from deamat.core.records import Measurement, Specimen
+from deamat.core.recording import Specimen
+from deamat.core.records import Measurement
 from deamat.core.schema import labels_of
 from deamat.core.units import known, si_factor
 

@@ -16,7 +16,8 @@ from deamat.core.instruments import Machine
 from deamat.core.ledger import Failure
 from deamat.core.properties import REFERENCE_AGE
 from deamat.core.quantity import Quantity
-from deamat.core.records import Condition, Law, Measurement, PropertyRecord, Specimen, Summary
+from deamat.core.recording import Specimen
+from deamat.core.records import Condition, Law, Measurement, PropertyRecord, Summary
 from deamat.core.technique import AnyTechnique, Context
 from deamat.run.boundary import FAILED, attempt
 from deamat.run.build_cache import STALE, BuildCache, digest, key_of

@@ -15,7 +15,7 @@ from deamat.core.config import Config
 from deamat.core.errors import RawFileError
 from deamat.core.ledger import Failure, FileEntry, Role
 from deamat.core.manifest import Difference, compare, parse_manifest
-from deamat.core.records import Specimen
+from deamat.core.recording import Specimen
 from deamat.core.register import REGISTER_FILES, SHEET, read_register
 from deamat.core.slug import Spellings
 from deamat.core.technique import AnyTechnique

@@ -12,7 +12,8 @@ import numpy as np
 from deamat.consistency.seen import Seen, look
 from deamat.core.errors import ConfigError, RawFileError
 from deamat.core.ledger import Failure
-from deamat.core.records import Flag, Measurement, Recording, Specimen
+from deamat.core.recording import Recording, Specimen
+from deamat.core.records import Flag, Measurement
 from deamat.core.register import SHEET
 from deamat.core.technique import Context
 from deamat.formats.detect import by_name, detect

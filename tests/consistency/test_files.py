@@ -12,7 +12,8 @@ from deamat.consistency.statements import against_row
 from deamat.consistency.swaps import swapped_files
 from deamat.core.arrays import FloatArray
 from deamat.core.quantity import Quantity
-from deamat.core.records import MeasuredValue, Measurement, Recording, Source, Specimen
+from deamat.core.recording import Recording, Source, Specimen
+from deamat.core.records import MeasuredValue, Measurement
 from tests.consistency.test_rows_of_a_register import row
 
 SPEED = 12e-3 / 60.0

@@ -9,7 +9,7 @@ import pytest
 from deamat.consistency.rows import flags_of_row, materials_by_id
 from deamat.consistency.siblings import siblings_of_rows
 from deamat.core.quantity import Quantity
-from deamat.core.records import Specimen
+from deamat.core.recording import Specimen
 
 UNITS = {"temperature_K": "K", "humidity": "1"}
 

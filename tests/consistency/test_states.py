@@ -6,7 +6,7 @@ import pytest
 
 from deamat.consistency.states import State, states
 from deamat.core.config import Pooling
-from deamat.core.records import Specimen
+from deamat.core.recording import Specimen
 from tests.consistency.test_rows_of_a_register import row
 
 USUAL = Pooling()

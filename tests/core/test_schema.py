@@ -8,7 +8,8 @@ import pytest
 
 from deamat.core.errors import CardError
 from deamat.core.kinds import UNCERTAINTY
-from deamat.core.records import Flag, Law, Origin, PropertyRecord, Specimen
+from deamat.core.recording import Specimen
+from deamat.core.records import Flag, Law, Origin, PropertyRecord
 from deamat.core.schema import (
     After,
     Called,

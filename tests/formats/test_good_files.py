@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from deamat.core.arrays import FloatArray
-from deamat.core.records import Recording
+from deamat.core.recording import Recording
 from deamat.formats.detect import by_name, detect
 from deamat.formats.rawfile import RawFile
 from tests.formats.samples import SAMPLES, Sample

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from deamat.core.errors import RawFileError
-from deamat.core.records import Recording
+from deamat.core.recording import Recording
 from deamat.formats.detect import by_name, detect
 from deamat.formats.rawfile import RawFile
 

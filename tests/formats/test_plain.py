@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import pytest
 
 from deamat.core.errors import RawFileError
-from deamat.core.records import Recording
+from deamat.core.recording import Recording
 from deamat.core.unit_spellings import unit_as_written
 from deamat.core.units import UnknownUnit
 from deamat.formats.detect import detect

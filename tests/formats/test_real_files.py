@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from deamat.core.records import Recording
+from deamat.core.recording import Recording
 from deamat.formats import FORMATS
 from deamat.formats.detect import detect
 from deamat.formats.documentation import contradictions, stated_units

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from deamat.core.errors import RawFileError
-from deamat.core.records import Recording
+from deamat.core.recording import Recording
 from deamat.core.units import UNITS
 from deamat.formats.quantities import STANDARD, assign, own_name
 from deamat.formats.rawfile import RawFile

@@ -10,7 +10,7 @@ from click.testing import CliRunner
 
 from deamat.cli import cli
 from deamat.core.errors import RawFileError
-from deamat.core.records import Recording
+from deamat.core.recording import Recording
 from deamat.core.register import split_sheet
 from deamat.formats.detect import detect
 from deamat.formats.rawfile import RawFile

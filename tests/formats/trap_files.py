@@ -9,7 +9,8 @@ from pathlib import Path
 
 from deamat.core.errors import RawFileError
 from deamat.core.instruments import Machine
-from deamat.core.records import MeasuredValue, PropertyRecord, Recording, Specimen
+from deamat.core.recording import Recording, Specimen
+from deamat.core.records import MeasuredValue, PropertyRecord
 from deamat.core.register import read_register
 from deamat.core.technique import Context
 from deamat.formats.detect import detect

@@ -13,16 +13,8 @@ from deamat.core.arrays import FloatArray
 from deamat.core.ledger import FileEntry, Provenance
 from deamat.core.properties import CONDITIONS, PROPERTIES
 from deamat.core.quantity import Contribution, Quantity
-from deamat.core.records import (
-    Condition,
-    Flag,
-    Law,
-    Measurement,
-    Origin,
-    PropertyRecord,
-    Refusal,
-    Specimen,
-)
+from deamat.core.recording import Specimen
+from deamat.core.records import Condition, Flag, Law, Measurement, Origin, PropertyRecord, Refusal
 from deamat.materials.card import Credit, MaterialCard
 
 RAW = "soft-2026/compression"

@@ -11,7 +11,8 @@ import numpy as np
 from deamat.core.arrays import FloatArray
 from deamat.core.instruments import Machine
 from deamat.core.quantity import Quantity
-from deamat.core.records import Condition, Measurement, Recording, Source, Specimen
+from deamat.core.recording import Recording, Source, Specimen
+from deamat.core.records import Condition, Measurement
 from deamat.core.technique import C, Context, R, Technique
 
 EXACT = Machine(u_force_calibration=0.0, u_displacement_calibration=0.0)

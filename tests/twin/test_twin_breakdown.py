@@ -13,14 +13,8 @@ import pytest
 
 from deamat.core.errors import ConfigError, MissingProperty, RawFileError
 from deamat.core.instruments import Machine
-from deamat.core.records import (
-    MeasuredValue,
-    Measurement,
-    PropertyRecord,
-    Recording,
-    Source,
-    Specimen,
-)
+from deamat.core.recording import Recording, Source, Specimen
+from deamat.core.records import MeasuredValue, Measurement, PropertyRecord
 from deamat.core.register import read_register
 from deamat.core.technique import Context
 from deamat.formats.detect import detect

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from deamat.core.errors import ConfigError, MissingProperty, RawFileError
-from deamat.core.records import Recording
+from deamat.core.recording import Recording
 from deamat.estimators.dielectric.impedance import loss_tangent
 from deamat.formats.detect import detect
 from deamat.formats.rawfile import RawFile

@@ -13,7 +13,8 @@ import pytest
 
 from deamat.core.config import load_config
 from deamat.core.errors import MissingProperty
-from deamat.core.records import Law, Measurement, Recording, Specimen, Summary
+from deamat.core.recording import Recording, Specimen
+from deamat.core.records import Law, Measurement, Summary
 from deamat.core.register import read_register
 from deamat.core.technique import Context
 from deamat.core.viscometer import full_scale_Pas

@@ -9,7 +9,8 @@ import numpy as np
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
 from deamat.core.quantity import Contribution
-from deamat.core.records import Detail, Flag, Recording, Specimen
+from deamat.core.recording import Recording, Specimen
+from deamat.core.records import Detail, Flag
 from deamat.techniques.breakdown.config import BreakdownConfig
 from deamat.techniques.breakdown.ramp import Breakdown, End, Event, find_breakdown
 from deamat.techniques.breakdown.result import Ramp

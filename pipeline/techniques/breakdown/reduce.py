@@ -4,14 +4,8 @@ from __future__ import annotations
 
 from deamat.core.errors import FitRefused
 from deamat.core.quantity import Contribution, Quantity
-from deamat.core.records import (
-    Condition,
-    Flag,
-    MeasuredValue,
-    Measurement,
-    Recording,
-    Specimen,
-)
+from deamat.core.recording import Recording, Specimen
+from deamat.core.records import Condition, Flag, MeasuredValue, Measurement
 from deamat.core.technique import Context
 from deamat.techniques.breakdown.config import FIELD, BreakdownConfig
 from deamat.techniques.breakdown.log import seen_in_log

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 
 from deamat.core.errors import FitRefused
 from deamat.core.quantity import Contribution
-from deamat.core.records import Detail, Flag, Specimen
+from deamat.core.recording import Specimen
+from deamat.core.records import Detail, Flag
 from deamat.techniques.breakdown.config import BreakdownConfig
 from deamat.techniques.breakdown.result import Ramp
 

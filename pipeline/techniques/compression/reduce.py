@@ -9,16 +9,8 @@ from dataclasses import dataclass, replace
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
 from deamat.core.quantity import Contribution
-from deamat.core.records import (
-    Condition,
-    Detail,
-    Flag,
-    MeasuredValue,
-    Measurement,
-    Recording,
-    Refusal,
-    Specimen,
-)
+from deamat.core.recording import Recording, Specimen
+from deamat.core.records import Condition, Detail, Flag, MeasuredValue, Measurement, Refusal
 from deamat.core.technique import Context
 from deamat.estimators.curves.slope import Line, curvature
 from deamat.estimators.curves.stress_strain import (

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from deamat.core.records import Measurement, Recording, Refusal, Specimen
+from deamat.core.recording import Recording, Specimen
+from deamat.core.records import Measurement, Refusal
 from deamat.core.technique import Context
 from deamat.techniques.handling.config import KEY, HandlingConfig
 from deamat.techniques.handling.runs import RUN_COLUMNS, Line

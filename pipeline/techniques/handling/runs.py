@@ -11,7 +11,7 @@ from operator import attrgetter
 import numpy as np
 
 from deamat.core.arrays import FloatArray
-from deamat.core.records import Specimen
+from deamat.core.recording import Specimen
 
 RUN_COLUMNS = ("batch", "mixed_at")  # what tells two runs of one material apart
 

@@ -8,16 +8,8 @@ from operator import attrgetter
 
 from deamat.core.properties import property_key
 from deamat.core.quantity import Quantity
-from deamat.core.records import (
-    Detail,
-    Flag,
-    Measurement,
-    Origin,
-    PropertyRecord,
-    Refusal,
-    Specimen,
-    Summary,
-)
+from deamat.core.recording import Specimen
+from deamat.core.records import Detail, Flag, Measurement, Origin, PropertyRecord, Refusal, Summary
 from deamat.core.technique import Context
 from deamat.core.units import from_si
 from deamat.techniques.handling.config import KEY, HandlingConfig

@@ -11,7 +11,7 @@ from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
 from deamat.core.instruments import Machine
 from deamat.core.quantity import Quantity
-from deamat.core.records import Recording, Specimen
+from deamat.core.recording import Recording, Specimen
 from deamat.core.units import from_si
 from deamat.techniques.nanoindentation.config import NanoindentationConfig
 from deamat.techniques.shared.geometry import register_length

@@ -10,7 +10,8 @@ import numpy as np
 
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
-from deamat.core.records import Flag, Specimen
+from deamat.core.recording import Specimen
+from deamat.core.records import Flag
 from deamat.estimators.curves.contact import (
     Contact,
     StartsInContact,

@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 from deamat.core.errors import FitRefused
 from deamat.core.instruments import Machine
 from deamat.core.quantity import Contribution, Quantity
-from deamat.core.records import Detail, Flag, MeasuredValue, Measurement, Recording, Specimen
+from deamat.core.recording import Recording, Specimen
+from deamat.core.records import Detail, Flag, MeasuredValue, Measurement
 from deamat.core.technique import Context
 from deamat.core.units import from_si
 from deamat.estimators.curves.contact import Contact

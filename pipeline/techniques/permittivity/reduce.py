@@ -10,15 +10,8 @@ import numpy as np
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
 from deamat.core.quantity import Contribution, Quantity
-from deamat.core.records import (
-    Condition,
-    Detail,
-    Flag,
-    MeasuredValue,
-    Measurement,
-    Recording,
-    Specimen,
-)
+from deamat.core.recording import Recording, Specimen
+from deamat.core.records import Condition, Detail, Flag, MeasuredValue, Measurement
 from deamat.core.technique import Context
 from deamat.estimators.dielectric.sweep import (
     Position,

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
 from deamat.core.instruments import LcrAccuracy
-from deamat.core.records import Recording
+from deamat.core.recording import Recording
 from deamat.core.units import from_si
 from deamat.estimators.dielectric.edge_field import edge_terms, vacuum_capacitance
 from deamat.estimators.dielectric.impedance import (

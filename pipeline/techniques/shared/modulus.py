@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
 from deamat.core.quantity import Contribution, Quantity
-from deamat.core.records import Condition, Flag, MeasuredValue, Recording, Specimen
+from deamat.core.recording import Recording, Specimen
+from deamat.core.records import Condition, Flag, MeasuredValue
 from deamat.estimators.curves.slope import FEW_INDEPENDENT, Line, fit_line, outlying
 from deamat.estimators.curves.stress_strain import reloads
 from deamat.estimators.mean import coverage_factor

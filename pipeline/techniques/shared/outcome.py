@@ -7,7 +7,8 @@ from typing import TypeVar
 
 from deamat.core.errors import FitRefused
 from deamat.core.quantity import Contribution
-from deamat.core.records import Condition, Measurement, Recording, Refusal, Result, Source, Specimen
+from deamat.core.recording import Recording, Source, Specimen
+from deamat.core.records import Condition, Measurement, Refusal, Result
 
 R = TypeVar("R", bound=Result)
 

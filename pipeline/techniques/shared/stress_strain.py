@@ -12,7 +12,8 @@ from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
 from deamat.core.instruments import Machine
 from deamat.core.quantity import Contribution, Quantity
-from deamat.core.records import Flag, Recording
+from deamat.core.recording import Recording
+from deamat.core.records import Flag
 from deamat.estimators.curves.start import find_hold, zero_of_position
 from deamat.estimators.curves.stress_strain import loading_branch
 from deamat.techniques.shared.geometry import Section, scale_budget

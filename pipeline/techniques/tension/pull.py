@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from deamat.core.records import Flag, Recording
+from deamat.core.recording import Recording
+from deamat.core.records import Flag
 from deamat.estimators.curves.rupture import Rupture
 from deamat.estimators.curves.slack import Slack, find_slack
 from deamat.techniques.shared.stress_strain import StressStrain

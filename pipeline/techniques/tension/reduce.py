@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from deamat.core.errors import FitRefused
-from deamat.core.records import MeasuredValue, Measurement, Recording, Refusal, Specimen
+from deamat.core.recording import Recording, Specimen
+from deamat.core.records import MeasuredValue, Measurement, Refusal
 from deamat.core.technique import Context
 from deamat.estimators.curves.rupture import find_rupture
 from deamat.estimators.curves.stress_strain import loading_branch

@@ -9,7 +9,7 @@ import numpy as np
 
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
-from deamat.core.records import Recording, Specimen
+from deamat.core.recording import Recording, Specimen
 
 _DAY_S = 86400.0
 _HALF_DAY_S = 43200.0

@@ -11,7 +11,7 @@ from deamat.core.arrays import FloatArray
 from deamat.core.records import Law, Measurement, Summary
 from deamat.core.units import from_si
 from deamat.techniques.viscosity.config import VISCOSITY
-from deamat.techniques.viscosity.flow_curve import FlowReadings
+from deamat.techniques.viscosity.flow_fit import FlowReadings
 from deamat.techniques.viscosity.readings import Readings
 from deamat.techniques.viscosity.result import Run
 

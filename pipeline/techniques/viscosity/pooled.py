@@ -13,7 +13,8 @@ from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
 from deamat.core.laws import FORMS, POLYNOMIAL, POWER_LAW_FLUID
 from deamat.core.properties import property_key
-from deamat.core.records import Law, Origin, Specimen
+from deamat.core.recording import Specimen
+from deamat.core.records import Law, Origin
 from deamat.estimators.mean import coverage_factor
 from deamat.techniques.viscosity.config import CONSISTENCY, INDEX, VISCOSITY, ViscosityConfig
 from deamat.techniques.viscosity.fitted import Fitted

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused, OutOfRange
 from deamat.core.instruments import Machine
-from deamat.core.records import Flag, Recording
+from deamat.core.recording import Recording
+from deamat.core.records import Flag
 from deamat.core.viscometer import full_scale_Pas
 from deamat.formats.viscometer import lines_text
 from deamat.techniques.viscosity.config import ViscosityConfig

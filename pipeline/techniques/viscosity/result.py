@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from deamat.techniques.viscosity.flow_curve import FlowReadings
+from deamat.techniques.viscosity.flow_fit import FlowReadings
 from deamat.techniques.viscosity.readings import Readings
 
 Run = Readings | FlowReadings

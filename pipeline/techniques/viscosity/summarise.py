@@ -6,7 +6,8 @@ import math
 from collections.abc import Sequence
 
 from deamat.core.errors import FitRefused
-from deamat.core.records import Measurement, Specimen, Summary
+from deamat.core.recording import Specimen
+from deamat.core.records import Measurement, Summary
 from deamat.core.technique import Context
 from deamat.techniques.shared.mean import summarise_by_mean
 from deamat.techniques.shared.outcome import refusal

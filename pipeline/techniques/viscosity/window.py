@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from deamat.core.errors import FitRefused
-from deamat.core.records import Flag, Specimen
+from deamat.core.recording import Specimen
+from deamat.core.records import Flag
 from deamat.techniques.viscosity.config import ViscosityConfig
 from deamat.techniques.viscosity.readings import Readings, joined, speeds_alternate
 from deamat.techniques.viscosity.temperature import Probe, at_one_temperature

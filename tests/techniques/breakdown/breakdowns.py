@@ -9,7 +9,8 @@ import numpy as np
 
 from deamat.core.instruments import Machine
 from deamat.core.quantity import Quantity
-from deamat.core.records import Measurement, PropertyRecord, Recording, Specimen, Summary
+from deamat.core.recording import Recording, Specimen
+from deamat.core.records import Measurement, PropertyRecord, Summary
 from deamat.core.technique import Context
 from deamat.techniques.breakdown import TECHNIQUE
 from deamat.techniques.breakdown.config import BreakdownConfig

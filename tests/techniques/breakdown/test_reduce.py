@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from deamat.core.quantity import Quantity
-from deamat.core.records import Recording, Specimen
+from deamat.core.recording import Recording, Specimen
 from tests.techniques.breakdown.breakdowns import MICROMETER, film, ramp_file, reduce, steps_file
 from tests.techniques.curves import recording
 

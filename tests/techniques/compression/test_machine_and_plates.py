@@ -9,7 +9,8 @@ import pytest
 
 from deamat.core.arrays import FloatArray
 from deamat.core.instruments import Machine
-from deamat.core.records import Measurement, Specimen
+from deamat.core.recording import Specimen
+from deamat.core.records import Measurement
 from deamat.techniques.compression import TECHNIQUE
 from deamat.techniques.shared.modulus import LoadingCurve
 from tests.techniques.curves import CYLINDER, EXACT, context, recording, specimen

@@ -9,7 +9,8 @@ from collections.abc import Iterable
 import pytest
 
 from deamat.core.instruments import Machine
-from deamat.core.records import Measurement, PropertyRecord, Recording, Summary
+from deamat.core.recording import Recording
+from deamat.core.records import Measurement, PropertyRecord, Summary
 from deamat.core.register import read_register
 from deamat.core.technique import Context
 from deamat.techniques.handling import TECHNIQUE

@@ -10,7 +10,8 @@ import numpy as np
 from deamat.core.arrays import FloatArray
 from deamat.core.instruments import Machine
 from deamat.core.quantity import Quantity
-from deamat.core.records import Measurement, Recording, Specimen
+from deamat.core.recording import Recording, Specimen
+from deamat.core.records import Measurement
 from deamat.core.technique import Context
 from deamat.techniques.nanoindentation import TECHNIQUE
 from deamat.techniques.nanoindentation.config import MODULUS

@@ -9,7 +9,7 @@ import pytest
 
 from deamat.core.instruments import Machine
 from deamat.core.quantity import Quantity
-from deamat.core.records import Recording
+from deamat.core.recording import Recording
 from deamat.techniques.nanoindentation import TECHNIQUE
 from tests.techniques.curves import lengths
 from tests.techniques.nanoindentation.indents import (

@@ -11,7 +11,8 @@ import numpy as np
 from deamat.core.arrays import FloatArray
 from deamat.core.instruments import Machine
 from deamat.core.quantity import Quantity
-from deamat.core.records import Flag, Measurement, Recording, Source, Specimen
+from deamat.core.recording import Recording, Source, Specimen
+from deamat.core.records import Flag, Measurement
 from deamat.core.technique import Context
 from deamat.estimators.dielectric.impedance import PAIRS, ComplexArray, shown
 from deamat.techniques.permittivity import TECHNIQUE

@@ -11,7 +11,8 @@ from deamat.core.config import load_config
 from deamat.core.instruments import Machine
 from deamat.core.properties import REFERENCE_AGE
 from deamat.core.quantity import Quantity
-from deamat.core.records import PropertyRecord, Recording, Source, Specimen
+from deamat.core.recording import Recording, Source, Specimen
+from deamat.core.records import PropertyRecord
 from deamat.core.register import read_register
 from deamat.core.technique import AnyTechnique, Context
 from deamat.estimators.dielectric.impedance import loss_tangent

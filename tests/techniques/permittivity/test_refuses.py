@@ -10,7 +10,8 @@ import pytest
 
 from deamat.core.arrays import FloatArray
 from deamat.core.quantity import Quantity
-from deamat.core.records import Flag, Recording
+from deamat.core.recording import Recording
+from deamat.core.records import Flag
 from deamat.estimators.dielectric.impedance import ComplexArray
 from tests.techniques.permittivity.films import (
     FREQUENCY,

@@ -10,6 +10,7 @@ import pytest
 
 from deamat.core.errors import FitRefused
 from deamat.core.quantity import Contribution, Quantity
+from deamat.core.recording import Specimen
 from deamat.core.records import (
     Condition,
     Flag,
@@ -17,7 +18,6 @@ from deamat.core.records import (
     Measurement,
     PropertyRecord,
     Refusal,
-    Specimen,
     Summary,
 )
 from deamat.techniques.shared.mean import summarise_by_mean

@@ -10,7 +10,7 @@ import pytest
 from deamat.core.errors import FitRefused
 from deamat.core.instruments import Machine
 from deamat.core.quantity import Quantity
-from deamat.core.records import Recording
+from deamat.core.recording import Recording
 from deamat.techniques.shared.geometry import circular_section, rectangular_section, register_length
 from deamat.techniques.shared.stress_strain import StressStrain, disagreement, stress_strain
 from tests.techniques.curves import recording

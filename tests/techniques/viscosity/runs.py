@@ -8,7 +8,8 @@ import numpy as np
 
 from deamat.core.arrays import FloatArray
 from deamat.core.instruments import Machine
-from deamat.core.records import Measurement, Recording, Source, Specimen
+from deamat.core.recording import Recording, Source, Specimen
+from deamat.core.records import Measurement
 from deamat.core.technique import Context
 from deamat.core.viscometer import full_scale_Pas
 from deamat.techniques import viscosity

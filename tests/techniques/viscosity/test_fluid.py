@@ -17,7 +17,8 @@ from deamat.formats.detect import detect
 from deamat.formats.rawfile import RawFile
 from deamat.techniques import viscosity
 from deamat.techniques.viscosity.config import RateFactor, ViscosityConfig
-from deamat.techniques.viscosity.flow_curve import NEWTONIAN, POWER_LAW, fit_flow_curve
+from deamat.techniques.viscosity.flow_curve import NEWTONIAN, POWER_LAW
+from deamat.techniques.viscosity.flow_fit import fit_flow_curve
 from deamat.techniques.viscosity.flow_sweeps import parted
 from deamat.techniques.viscosity.result import Run
 from tests.techniques.viscosity.runs import CONTEXT, HOUR, recording, reduce, specimen

@@ -12,7 +12,8 @@ from deamat.core.arrays import FloatArray
 from deamat.core.errors import OutOfRange
 from deamat.core.instruments import Machine
 from deamat.core.quantity import Quantity
-from deamat.core.records import Law, Measurement, Specimen
+from deamat.core.recording import Specimen
+from deamat.core.records import Law, Measurement
 from deamat.core.register import read_register
 from deamat.core.technique import Context
 from deamat.formats.detect import detect
