@@ -139,6 +139,8 @@ def _absent(good: Answer, spoilt: Outcome) -> Judged:
             return Judged("refused", f"{key}: {reason}")
     if spoilt.rejected:
         return Judged("rejected", spoilt.rejected[0])
+    if spoilt.refused and not spoilt.records:  # a specimen is refused whole, under its usual keys
+        return Judged("refused", ": ".join(spoilt.refused[0]))
     return Judged("gone", f"{good.key}: {good}")
 
 

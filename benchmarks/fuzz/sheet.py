@@ -7,7 +7,7 @@ import io
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from decimal import Decimal, InvalidOperation
+from decimal import Context, Decimal, InvalidOperation
 from functools import cached_property
 
 _QUOTED = r',(?=")'
@@ -19,6 +19,7 @@ _SEPARATOR = {
 }  # fmt: skip
 _DECIMAL_COMMA = ("antonpaar", "mts", "rheocompass")
 _UNITS_BELOW_LABELS = {"antonpaar": 1, "bluehill": 1, "rheocompass": 2, "schmid": 1, "zwick": 1}
+_TEN_DIGITS = Context(prec=10)
 _NO_LABELS = ("lcr6000", "ndj8s")
 
 
@@ -112,6 +113,7 @@ class Sheet:
 
     def written(self, value: Decimal, like: str) -> str:
         """Write a number as another cell is written: quotes, decimal mark, exponent."""
+        value = _TEN_DIGITS.plus(value)
         small = value != 0 and not -12 < value.adjusted() < 12
         text = f"{value:.6e}" if "e" in like.lower() or small else f"{value:f}"
         text = text.replace(".", self.decimal)

@@ -132,6 +132,7 @@ SEVERITY_OF: dict[str, Severity] = {
     "untared-load": "serious",
     "voltage-noise": "warning",
     "wide-interval": "warning",
+    "wild-reading": "warning",
 }
 
 

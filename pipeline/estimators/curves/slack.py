@@ -76,7 +76,7 @@ def find_slack(strain: FloatArray, stress: FloatArray, window: float) -> Slack |
     after = before + turn
     if not (after > 0.0 and before < _LOOSE * after):
         return None
-    noise2 = float(rss[best]) / (n - 4)
+    noise2 = max(float(rss[best]), 0.0) / (n - 4)  # of an exact hinge, rounding may leave less
     if noise2 > 0.0 and fdtrc(2, n - 4, turn * turn * size[best] / 2.0 / noise2) > _CERTAIN:
         return None
     near = np.flatnonzero(rss <= rss[best] + noise2)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,14 +15,18 @@ from deamat.core.instruments import Machine
 from deamat.core.quantity import Contribution, Quantity
 from deamat.core.recording import Recording
 from deamat.core.records import Flag
+from deamat.estimators.curves.lone import lone_readings, without
 from deamat.estimators.curves.start import find_hold, zero_of_position
 from deamat.estimators.curves.stress_strain import loading_branch
 from deamat.techniques.shared.geometry import Section, scale_budget
+from deamat.techniques.shared.outcome import line_span
 
 IndexArray = NDArray[np.intp]
 
 _SMALL_STRAIN = 0.05  # up to which the file's own stress is held against force over area
 _FEWEST = 8  # samples for that at least
+_CHANNELS = ("displacement_m", "force_N", "nominal_strain", "nominal_stress_Pa")
+_MOST_LONE = 3  # wild readings in one channel
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +45,7 @@ class StressStrain:
     compliance_per_Pa, u_compliance_per_Pa : strain of the machine for a stress, which was
         subtracted, and its standard uncertainty; None where no compliance is declared
     first : index of the first sample of the test: the last one before the machine moves
-    flags : what was found at the start (an absolute position, grips that closed)
+    flags : what was found at the start (an absolute position, grips that closed), wild readings
     """
 
     nominal_strain: FloatArray
@@ -85,9 +90,10 @@ def stress_strain(
 
     Raises
     ------
-    FitRefused : columns are missing, not finite, or never move; or the file's own stress is another
+    FitRefused : columns are missing, not finite, or never move; the file's own stress is another;
+        or more than a few single readings of a channel stand off both of their neighbours
     """
-    columns = recording.columns
+    columns, wild = _without_lone_readings(recording)
     strain_budget: tuple[Contribution, ...] = (
         Contribution("displacement calibration", machine.u_displacement_calibration, shared=True),
     )
@@ -141,8 +147,35 @@ def stress_strain(
             columns.get("extensometer_strain"),
             compliance,
             u_compliance,
+            flags=wild,
         )
     )
+
+
+def _without_lone_readings(
+    recording: Recording,
+) -> tuple[Mapping[str, FloatArray], tuple[Flag, ...]]:
+    """Replace single readings off both of their neighbours, and say where they are.
+
+    Raises
+    ------
+    FitRefused : there are many of them
+    """
+    columns, flags = dict(recording.columns), list[Flag]()
+    for name in _CHANNELS:
+        values = columns.get(name)
+        if values is None or not (lone := lone_readings(values)).size:
+            continue
+        shown = [line_span(recording.source, values.size, i, i)[0] for i in lone[:_MOST_LONE]]
+        lines = ", ".join(map(str, shown))
+        told = f"{name} stands off both neighbours, which agree, in line {lines}"
+        if lone.size > _MOST_LONE:
+            raise FitRefused(
+                f"{told} and {lone.size - _MOST_LONE} others: the channel is not to be trusted"
+            )
+        columns[name] = without(values, lone)
+        flags.append(Flag("wild-reading", f"{told}: taken as the mean of both"))
+    return columns, tuple(flags)
 
 
 def _insist_on_own_stress(
@@ -171,7 +204,7 @@ def _from_its_start(curve: StressStrain) -> StressStrain:
     """Count strain from where the test began, if the first position is no strain."""
     hold = find_hold(curve.nominal_strain, curve.nominal_stress_Pa)
     strain = curve.nominal_strain
-    flags: tuple[Flag, ...] = ()
+    flags = curve.flags
     if hold.gripping:
         flags += (
             Flag(

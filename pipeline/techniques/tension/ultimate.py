@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-import numpy as np
-
 from deamat.core.errors import FitRefused
 from deamat.core.quantity import Contribution, Quantity
 from deamat.core.records import Condition, Flag, MeasuredValue
@@ -17,7 +15,6 @@ from deamat.techniques.tension.config import ELONGATION, STRENGTH
 from deamat.techniques.tension.moduli import several_loadings
 from deamat.techniques.tension.pull import Pull
 
-_SPIKE = 0.02  # of the greatest stress: one sample that stands out by more is no strength
 _UNBROKEN = {
     "stopped": "the record ends under load",
     "reversed": "the machine turns before the strip breaks",
@@ -29,12 +26,11 @@ def tensile_strength(pull: Pull, conditions: Mapping[str, Condition]) -> Measure
 
     Raises
     ------
-    FitRefused : nothing was pulled, or one sample alone holds the greatest stress
+    FitRefused : nothing was pulled
     """
     stress, top = pull.curve.nominal_stress_Pa, pull.rupture.maximum
     zero = zero_of_load(stress, pull.curve.first, pull.rupture.first_after)
     strength = _insist_on_load(float(stress[top]) - (0.0 if zero is None else zero.zero_Pa))
-    _refuse_spike(pull, strength)
     rounding = pull.curve.stress_resolution_Pa / math.sqrt(12.0)
     budget = relative_lines(strength, pull.curve.stress_budget)
     if rounding > 0.0:
@@ -115,23 +111,6 @@ def _insist_on_load(greatest_Pa: float) -> float:
         f"the greatest stress of the loading is {greatest_Pa:.4g} Pa, not positive; nothing was "
         "pulled, or the force is of another sign than the displacement"
     )
-
-
-def _refuse_spike(pull: Pull, strength: float) -> None:
-    """Refuse a greatest stress that one sample alone holds, far above both of its neighbours."""
-    stress, top = pull.curve.nominal_stress_Pa, pull.rupture.maximum
-    if not 1 <= top < pull.rupture.last:
-        return
-    above = float(stress[top] - max(stress[top - 1], stress[top + 1]))
-    steps = np.abs(np.diff(stress[max(top - 20, 0) : top]))
-    usual = float(np.median(steps)) if steps.size else 0.0
-    if above > _SPIKE * strength and above > 8.0 * usual:
-        raise FitRefused(
-            f"one sample alone, number {top + 1}, holds the greatest stress, "
-            f"{100 * above / strength:.2g} % above both of its neighbours: a wild reading is no "
-            "strength; look at the file and leave the reading out",
-            {"sample": top + 1, "above_neighbours_Pa": above},
-        )
 
 
 def _flags_of_end(pull: Pull) -> tuple[Flag, ...]:

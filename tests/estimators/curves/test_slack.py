@@ -35,6 +35,13 @@ def test_both_slopes_are_exact_where_the_hinge_lies_on_the_grid() -> None:
     assert (found.slope_before_Pa, found.slope_after_Pa) == pytest.approx((0.3 * E, E))
 
 
+@pytest.mark.parametrize("place", [0.01822033898305085, 0.021525423728813563, 0.024830508474576275])
+def test_a_hinge_without_any_scatter_is_found(place: float) -> None:
+    found = find_slack(STRAIN, hinge(place), WINDOW)  # rounding leaves less than nothing of it
+    assert found is not None
+    assert found.strain == pytest.approx(place)
+
+
 @pytest.mark.parametrize(("loose", "slack"), [(0.78, True), (0.85, False), (1.0, False)])
 def test_a_start_less_steep_by_a_fifth_is_slack(loose: float, slack: bool) -> None:
     assert (find_slack(STRAIN, hinge(0.03, loose), WINDOW) is not None) == slack

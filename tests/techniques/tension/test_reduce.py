@@ -153,13 +153,38 @@ def test_cycles_before_the_break_are_not_the_test() -> None:
     assert all("several-loadings" in flags(v) for v in values.values())
 
 
-def test_one_wild_sample_is_no_strength() -> None:
-    wild = STRESS.copy()
-    wild[3000] = 1.1 * STRESS[-1]
-    measured = pull(np.append(STRAIN, [2.0]), np.append(wild, [0.0]))
-    (refusal,) = measured.refusals
-    assert refusal.key == "tensile_strength"
-    assert "one sample alone, number 3001, holds the greatest stress" in refusal.reason
+@pytest.mark.parametrize("wild_Pa", [1.1 * STRESS[-1], 1e3 * STRESS[-1], -1e3 * STRESS[-1], 0.0])
+def test_one_wild_load_moves_no_value(wild_Pa: float) -> None:
+    stress = STRESS.copy()
+    stress[3000] = wild_Pa
+    values = broken(STRAIN, stress)
+    assert values["tensile_strength"].quantity.value == pytest.approx(STRESS[-1])
+    assert values["elongation_at_break"].quantity.value == pytest.approx(STRAIN[-1])
+    assert values["tensile_modulus"].quantity.value == pytest.approx(5e5)
+    assert all("wild-reading" in flags(v) for v in values.values())
+    (flag,) = (f for f in values["tensile_modulus"].flags if f.name == "wild-reading")
+    assert flag.detail == (
+        "force_N stands off both neighbours, which agree, in line 3009: taken as the mean of both"
+    )
+
+
+def test_one_wild_position_moves_no_value() -> None:
+    strain = STRAIN.copy()
+    strain[3000] = -50.0
+    values = broken(strain, STRESS)
+    assert values["elongation_at_break"].quantity.value == pytest.approx(STRAIN[-1])
+    assert all("wild-reading" in flags(v) for v in values.values())
+
+
+def test_a_channel_of_many_wild_readings_is_refused() -> None:
+    stress = STRESS.copy()
+    stress[1000:3000:400] = 1e9
+    measured = pull(np.append(STRAIN, [2.0]), np.append(stress, [0.0]))
+    assert measured.values == ()
+    assert measured.refusals[0].reason == (
+        "force_N stands off both neighbours, which agree, in line 1009, 1409, 1809 and 2 others: "
+        "the channel is not to be trusted"
+    )
 
 
 def test_an_extensometer_takes_the_place_of_the_crosshead() -> None:
