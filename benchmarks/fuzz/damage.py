@@ -80,13 +80,17 @@ def cut_at_line(sheet: Sheet, rng: Generator, _: Sheet) -> bytes:
 
 def drop_line(sheet: Sheet, rng: Generator, _: Sheet) -> bytes:
     """Lose one line, of the header or of the table."""
-    at = int(rng.integers(sheet.first if rng.random() < 0.5 else len(sheet.lines)))
+    at = int(
+        rng.integers(len(sheet.header or sheet.lines) if rng.random() < 0.5 else len(sheet.lines))
+    )
     return replace(sheet, lines=(*sheet.lines[:at], *sheet.lines[at + 1 :])).data
 
 
 def double_line(sheet: Sheet, rng: Generator, _: Sheet) -> bytes:
     """Write one line twice, of the header or of the table."""
-    at = int(rng.integers(sheet.first if rng.random() < 0.5 else len(sheet.lines)))
+    at = int(
+        rng.integers(len(sheet.header or sheet.lines) if rng.random() < 0.5 else len(sheet.lines))
+    )
     return replace(sheet, lines=(*sheet.lines[: at + 1], *sheet.lines[at:])).data
 
 

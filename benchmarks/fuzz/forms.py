@@ -123,6 +123,54 @@ def e4980a(c: Columns) -> bytes:
     return _rows(head, columns, ",").encode()
 
 
+def rigol(c: Columns) -> bytes:
+    """Write the voltage of a ramp as a Rigol oscilloscope saves a waveform."""
+    t = c["time_s"]
+    head = ["X,CH1,Start,Increment,", f"Sequence,Volt,{t[0]:.6e},{t[1] - t[0]:.6e}"]
+    columns = [(np.arange(float(t.size)), ".0f"), (c["voltage_V"], ".4e")]
+    rows = _rows([], columns, ",").replace("\n", ",\n")
+    return (_rows(head, [], ",") + rows).encode()
+
+
+def tektronix(c: Columns) -> bytes:
+    """Write the voltage of a ramp as a Tektronix oscilloscope does: its header beside the rows."""
+    said = [
+        f"Record Length,{c['time_s'].size:.6e}", "Source,CH1", "Vertical Units,V",
+        "Horizontal Units,s", "Probe Atten,1",
+    ]  # fmt: skip
+    rows = _rows([], [(c["time_s"], ".6f"), (c["voltage_V"], ".3f")], ",").splitlines()
+    beside = [*said, *[","] * (len(rows) - len(said))]
+    return "".join(f"{a},,{row},\n" for a, row in zip(beside, rows, strict=True)).encode()
+
+
+def lvm(c: Columns) -> bytes:
+    """Write voltage and current of a ramp as LabVIEW does."""
+    head = [
+        "LabVIEW Measurement\t", "Writer_Version\t2", "Separator\tTab", "Decimal_Separator\t.",
+        "Multi_Headings\tNo", "X_Columns\tOne", f"Description\t{REMARK}",
+        "***End_of_Header***\t", "\t", "Channels\t2\t", f"Samples\t{c['time_s'].size}\t",
+        "Y_Unit_Label\tkV\tmA", "X_Dimension\tTime\tTime", "***End_of_Header***\t\t",
+        "X_Value\tVoltage\tCurrent\tComment",
+    ]  # fmt: skip
+    columns = [
+        (c["time_s"], ".6f"), (1e-3 * c["voltage_V"], ".6f"), (1e3 * c["current_A"], ".6f"),
+    ]  # fmt: skip
+    return _rows(head, columns, "\t").encode()
+
+
+def e4990a(c: Columns) -> bytes:
+    """Write a sweep as the trace of a Keysight E4990A: series resistance and reactance."""
+    head = [
+        "!Keysight Technologies,E4990A,SYNTHETIC", "BEGIN CH1_DATA",
+        "Frequency(Hz), R(Ohm)-data, X(Ohm)-data",
+    ]  # fmt: skip
+    w = 2.0 * np.pi * c["frequency_Hz"]
+    admittance = w * c["parallel_capacitance_F"] * (c["loss_tangent"] + 1j)
+    ohm = 1.0 / admittance
+    columns = [(c["frequency_Hz"], "+.6e"), (ohm.real, "+.6e"), (ohm.imag, "+.6e")]
+    return (_rows(head, columns, ", ") + "END\n").encode()
+
+
 def liquid(seed: int) -> Columns:
     """Simulate a flow curve: a power law (K = 30 Pa.s^n, n = 0.6) with 1 % noise."""
     rng = np.random.default_rng([seed, *b"fuzz liquid"])

@@ -58,14 +58,17 @@ class Good:
     @cached_property
     def sheets(self) -> tuple[Sheet, Sheet]:
         """The file that is spoilt and that of a sibling, taken apart."""
-        mine, sibling, *_ = (_taken_apart(path, data) for path, data in self.files.items())
+        mine, sibling, *_ = (
+            _taken_apart(path, data, self.technique) for path, data in self.files.items()
+        )
         return mine, sibling
 
 
-def _taken_apart(path: str, data: bytes) -> Sheet:
-    raw = RawFile(path, data)
+def _taken_apart(path: str, data: bytes, technique: str) -> Sheet:
+    raw = RawFile(path, data, technique=technique)
     source = detect(raw).read(raw).source
-    return Sheet.of(data, source.reader, source.encoding, source.first_line - 1)
+    rows = (source.first_line - 1, source.last_line)
+    return Sheet.of(data, source.reader, source.encoding, rows)
 
 
 def good_campaigns() -> dict[str, Good]:
@@ -114,7 +117,7 @@ def _of_the_twin() -> Iterator[Good]:
 
 def _in_other_forms() -> Iterator[Good]:
     pressed, pulled = of_twin("compression", STIFF), of_twin("tension", STIFF)
-    film = of_twin("permittivity", STIFF)
+    film, ramp = of_twin("permittivity", STIFF), of_twin("breakdown", "sylgard-182-10to1")
     for reader, good, write in (
         ("phantom", pressed, lambda c, n: forms.phantom(c, n("diameter_mm"), n("height_mm"))),
         ("nexygen", pressed, lambda c, _: forms.nexygen(c)),
@@ -126,6 +129,10 @@ def _in_other_forms() -> Iterator[Good]:
         ),
         ("plain-german", pressed, lambda c, _: forms.plain_german(c)),
         ("plain-bars", pulled, lambda c, _: forms.plain_bars(c)),
+        ("rigol", ramp, lambda c, _: forms.rigol(c)),
+        ("tektronix", ramp, lambda c, _: forms.tektronix(c)),
+        ("lvm", ramp, lambda c, _: forms.lvm(c)),
+        ("e4990a", film, lambda c, _: forms.e4990a(c)),
         ("e4980a", film, lambda c, _: forms.e4980a(c)),
     ):  # fmt: skip
         yield _rewritten(good, reader, write)

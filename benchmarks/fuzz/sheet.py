@@ -14,13 +14,20 @@ _QUOTED = r',(?=")'
 # What parts the cells of a row, by reader.
 _SEPARATOR = {
     "antonpaar": ";", "bluehill": _QUOTED, "flow_tab": "\t", "hysitron": "\t", "mark10": "\t",
-    "mts": "\t", "ndj8s": r"[\t#]|\s+", "nexygen": "\t", "rheocompass": "\t", "schmid": "\t",
-    "plain": r"[;|]", "soro": ";",
+    "lvm": "\t", "mts": "\t", "ndj8s": r"[\t#]|\s+", "nexygen": "\t", "plain": r"[;|]",
+    "rheocompass": "\t", "schmid": "\t", "soro": ";",
 }  # fmt: skip
 _DECIMAL_COMMA = ("antonpaar", "mts", "rheocompass")
-_UNITS_BELOW_LABELS = {"antonpaar": 1, "bluehill": 1, "rheocompass": 2, "schmid": 1, "zwick": 1}
+_UNITS_BELOW_LABELS = {
+    "antonpaar": 1,
+    "bluehill": 1,
+    "rheocompass": 2,
+    "rigol": 1,
+    "schmid": 1,
+    "zwick": 1,
+}
 _TEN_DIGITS = Context(prec=10)
-_NO_LABELS = ("lcr6000", "ndj8s")
+_NO_LABELS = ("lcr6000", "ndj8s", "tektronix")
 
 
 @dataclass(frozen=True)
@@ -41,12 +48,12 @@ class Sheet:
     newline: str
 
     @classmethod
-    def of(cls, data: bytes, reader: str, encoding: str, first: int) -> Sheet:
-        """Take a file apart; `first` is the line of its first row, counted from 0."""
+    def of(cls, data: bytes, reader: str, encoding: str, rows: tuple[int, int]) -> Sheet:
+        """Take a file apart; `rows` are the line of its first row and the one after its last."""
         text = data.decode(encoding)
         newline = "\r\n" if "\r\n" in text else "\n"
         lines = tuple(text.split(newline)[:-1])
-        return cls(reader, lines, first, len(lines), encoding, newline)
+        return cls(reader, lines, *rows, encoding, newline)
 
     @property
     def data(self) -> bytes:

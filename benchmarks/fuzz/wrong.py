@@ -18,12 +18,13 @@ _MISTAKEN = {
     "Pa·s": ("mPa·s",), "1/s": ("1/min",), "Pa s": ("mPa s",), "V/V": ("kV/V",), "A/V": ("mA/V",),
 }  # fmt: skip
 _FACTORS = ("1000", "0.001", "1e6", "1e-6", "25.4", "4.448", "9.81", "60", "0.1", "10")
+_BESIDE = 5  # lines of a header that stands beside the rows
 _GAINS = ("2", "0.5", "10", "0.1", "1.1", "0.9")
 
 
 def unit_of_label(sheet: Sheet, rng: Generator, _: Sheet) -> bytes:
     """Name another unit over the numbers as they are."""
-    lines = range(sheet.first)
+    lines = range(sheet.first or _BESIDE)
     places = [
         (at, found.span(1), found[1])
         for at in lines
