@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -73,7 +74,7 @@ def _state(
     state: State, name: str, members: Sequence[Specimen], unrecorded: tuple[tuple[str, Flag], ...]
 ) -> State:
     values = [s.numbers[name].value for s in members if name in s.numbers]
-    mean = values[0] if len(set(values)) == 1 else float(f"{sum(values) / len(values):.6g}")
+    mean = values[0] if len(set(values)) == 1 else float(f"{math.fsum(values) / len(values):.6g}")
     ids = {s.id for s in members}
     order = [s for s in state.specimens if s.id in ids]
     told = tuple((who, flag) for who, flag in unrecorded if who in ids)

@@ -70,7 +70,7 @@ def choose(heading: Heading, technique: str) -> Choice:
         _column(label, unit, asked)
         for label, unit in zip(heading.labels, heading.units, strict=True)
     ]
-    labelled = sum(1 for column in columns if column.means)
+    labelled = len([column for column in columns if column.means])
     twins: dict[str, str] = {}
     known = {
         name: taken
@@ -177,7 +177,10 @@ def _faults(columns: Sequence[_Column], asked: Asked, known: dict[str, Taken]) -
 
     need = max(
         asked.needs,
-        key=lambda names: (sum(map(hinted, names)), sum(name in known for name in names)),
+        key=lambda names: (
+            len([name for name in names if hinted(name)]),
+            sum(name in known for name in names),
+        ),
     )
     missing = [name for name in need if name not in known]
     if len(asked.needs) > 2 and not any(map(hinted, missing)):

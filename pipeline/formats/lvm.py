@@ -69,7 +69,7 @@ def _read(file: RawFile) -> Recording:
         _row(row.split(separator)[: len(labels) + 1], at, step, separator) if row.strip() else row
         for at, row in enumerate(lines[names + 1 :])
     ]
-    _insist_on_samples(file, said, sum(1 for row in rows if row.strip()), len(lines))
+    _insist_on_samples(file, said, len([row for row in rows if row.strip()]), len(lines))
     above = [line.replace(separator, ": ", 1).replace(separator, " ") for line in lines[:names]]
     return read_rewritten(file, [*above, separator.join(["Time (s)", *over]), *rows], _NAME)
 

@@ -72,7 +72,7 @@ def headings(lines: Sequence[str]) -> Iterator[Heading]:
             names = _trimmed(fields(line, separator))
             if len([name for name in names if name]) < 2:
                 continue
-            numbers = sum(map(looks_numeric, names))
+            numbers = len([name for name in names if looks_numeric(name)])
             yield from _headings_at(lines, at, separator, names, numbers)
 
 
@@ -153,7 +153,7 @@ def _first_row(lines: Sequence[str], at: int, separator: str, columns: int) -> i
     if at >= len(lines):
         return at or None  # a header alone is said so when it is read
     cells = fields(lines[at], separator)
-    numbers = sum(map(looks_numeric_grouped, cells))
+    numbers = len([cell for cell in cells if looks_numeric_grouped(cell)])
     return at if len(_trimmed(cells)) <= columns <= len(cells) and numbers >= 2 else None
 
 

@@ -27,6 +27,7 @@ Metadata
 from __future__ import annotations
 
 import io
+import math
 import re
 import struct
 import zipfile
@@ -124,7 +125,7 @@ def _sheets(file: RawFile) -> list[tuple[str, Sequence[Sequence[Cell]]]]:
 
     try:
         with zipfile.ZipFile(io.BytesIO(file.data)) as archive:
-            if sum(part.file_size for part in archive.infolist()) > _LARGEST:
+            if math.fsum(part.file_size for part in archive.infolist()) > _LARGEST:
                 raise RawFileError(file.path, "a workbook too large to unpack")
             damaged = archive.testzip()
             if damaged is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -144,7 +145,7 @@ def find_steps(
     holds = np.diff(t[[a for a, _ in held]])  # the last one ended with the test
     values = [float(np.median(v[a : b + 1])) for a, b in held]
     step_V = float(np.median(np.diff(values))) if len(held) >= _FEWEST_LEVELS else 0.0
-    flat_s = sum(float(t[b] - t[a]) for a, b in held)
+    flat_s = math.fsum(float(t[b] - t[a]) for a, b in held)
     if (
         step_V < _LEAST_STEP * top
         or float(np.median(holds)) < least_hold_s

@@ -145,7 +145,7 @@ def _mean(pairs: Sequence[Pair], u_shared: float) -> _Found:
             at_least = mean_with_shared(values, own.quantity.u_independent, u_shared)
             ci95 = (at_least.value, math.inf)
             return _Found(at_least, ci95, "lower", "mean, at least: unbroken ones at their limits,")
-        how = f"mean, {sum(limits)} unbroken ones as lower limits (maximum likelihood),"
+        how = f"mean, {limits.count(True)} unbroken ones as lower limits (maximum likelihood),"
         return _Found(censored, positive_interval(censored), "exact", how)
     mean = mean_with_shared(values, own.quantity.u_independent, u_shared, own.degrees_of_freedom)
     interval = mean.ci95 if min(values) < 0.0 else positive_interval(mean)

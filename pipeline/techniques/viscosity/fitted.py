@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -52,7 +53,7 @@ class Fitted:
                 found.append((weight, law.estimate(*of_law(law))))
             except (FitRefused, OutOfRange):
                 continue
-        total = sum(weight for weight, _ in found)
+        total = math.fsum(weight for weight, _ in found)
         if total < _ENOUGH_WEIGHT:
             raise FitRefused(
                 f"of the laws that the data do not tell apart, {total:.0%} by weight answer: the "
@@ -70,8 +71,8 @@ class Fitted:
         return Estimate(
             value,
             u,
-            sum(w * e.calibration for w, e in zip(weights, each, strict=True)),
-            sum(w * e.thermal for w, e in zip(weights, each, strict=True)),
+            math.fsum(w * e.calibration for w, e in zip(weights, each, strict=True)),
+            math.fsum(w * e.thermal for w, e in zip(weights, each, strict=True)),
             float("inf"),
         )
 
