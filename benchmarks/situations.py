@@ -4,7 +4,7 @@
 files as a run would and judges what comes out: right (the interval holds the truth), a limit that
 holds, flagged with a cause, refused or rejected, missed (outside the interval), or SILENT: off by
 more than twice the half width of its 95 % interval, with no flag that names the cause. Severity 0
-is the same laboratory with nothing amiss, and counts false alarms. `--docs` writes
+is the same laboratory without the fault, and counts false alarms. `--docs` writes
 `docs/situations.md`.
 """
 
@@ -151,7 +151,7 @@ def page(rows: Sequence[dict[str, str | float]], count: int) -> str:
         lines += ["|---" * (len(_SHOWN) + 3) + "|"]
         for row in (r for r in rows if r["situation"] == name):
             severity = float(row["severity"])
-            label = "nothing amiss" if severity == 0.0 else f"{severity:g}"
+            label = "no fault" if severity == 0.0 else f"{severity:g}"
             numbers = " | ".join(str(row[v]) for v in (*_SHOWN, "cause named %"))
             lines.append(f"| {label} | {row['naive off %']} | {numbers} |")
         lines += [
@@ -162,10 +162,10 @@ def page(rows: Sequence[dict[str, str | float]], count: int) -> str:
 
 
 _INTRODUCTION = """\
-Each situation is made by the twin (SYNTHETIC; `deamat simulate --situation NAME`) {} times at each
-severity, read and judged as a run would. SILENT is a value that is off by more than twice the half
-width of its 95 % interval with no flag that names the cause. Made by
-`python -m benchmarks.situations --docs`."""
+Each situation is made by the twin (SYNTHETIC; `pipeline/twin/situations/`) {} times at each
+severity, read and judged as a run would, one material in one campaign alone. SILENT is a value
+that is off by more than twice the half width of its 95 % interval with no flag that names the
+cause. Made by `python -m benchmarks.situations --docs`."""
 _SHOWN: tuple[Verdict, ...] = ("right", "limit", "flagged", "refused", "missed", "SILENT")
 
 

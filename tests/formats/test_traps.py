@@ -173,8 +173,7 @@ SEEN = (
     Trap("-327.67", "an open probe in a table",
          elapsed({6.0: f"{1000 * viscosity(6):.0f},-327.67"} | {
              h: f"{1000 * viscosity(h):.0f},22.0" for h in HOURS if h != 6.0},
-             "time_h,viscosity_mPas,temperature_C"), "viscosity", ELAPSED, values=VISCOSITIES,
-         flags=("not-in-every-reading: temperature_K is missing in some lines and was not used",)),
+             "time_h,viscosity_mPas,temperature_C"), "viscosity", ELAPSED, values=VISCOSITIES),
     Trap("-327.67", "an open probe in a register", "", "handling",
          "material,time_h,defect,bed_temperature_C\nm,1,none,-327.67\n",
          rejected="c/handling/observations.csv, line 2, column 4: a temperature below absolute zero "
