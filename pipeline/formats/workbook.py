@@ -57,6 +57,8 @@ _FORMATS = re.compile(rb'<xf\b[^>]*?numFmtId="([0-9]+)"')
 _LARGEST = 1 << 29  # bytes of an archive unpacked
 _AGAIN = "open it in the spreadsheet program, save it, and register the saved file"
 
+# What zipfile raises on a damaged archive: NotImplementedError for a compression method that a
+# flipped byte names, RuntimeError for a part that it marks as encrypted.
 _DAMAGED = (
     zipfile.BadZipFile, zlib.error, struct.error, NotImplementedError, RuntimeError, OSError,
     EOFError, ValueError,

@@ -59,7 +59,7 @@ class State:
         self._lock = None if read_only else self._locked(processed)
         try:
             self.db = self._open(processed / STATE_FILE)
-        except BaseException:
+        except BaseException:  # also Ctrl-C: nothing is swallowed, but the lock must not stay
             self._unlock()
             raise
 
