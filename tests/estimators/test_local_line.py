@@ -57,3 +57,9 @@ def test_knocks_are_found_alone_and_in_pairs_but_not_at_the_ends() -> None:
     assert isolated_points(y).tolist() == [12, 13, 30]
     assert isolated_points(y, least=0.5).size == 0
     assert isolated_points(y[:10]).size == 0
+
+
+def test_a_knock_is_found_on_a_slow_wave_that_is_greater() -> None:
+    y = np.sin(np.linspace(0.0, 4.0 * np.pi, 101))
+    y[[40, 73]] += 0.5
+    assert isolated_points(y, least=0.3).tolist() == [40, 73]

@@ -102,6 +102,8 @@ def test_one_of_few_stands_apart_where_it_is_another_number_altogether() -> None
     assert apart_of_few([10.0, 10.3, 41.0]) == (2,)
     assert apart_of_few([2.4, 10.0, 10.3, 9.9]) == (0,)
     assert apart_of_few([10.0, 10.01, 14.0]) == ()
+    assert apart_of_few([10.0, 10.01, 17.4]) == ()
+    assert apart_of_few([10.0, 10.01, 17.6]) == (2,)
     assert apart_of_few([10.0, 20.0, 40.0]) == ()
     assert apart_of_few([10.0, 41.0]) == ()
     rng = np.random.default_rng(5)

@@ -55,4 +55,5 @@ def test_noise_is_more_than_the_last_digit() -> None:
     assert not has_noise(smooth)
     assert not has_noise(1e-3 * smooth)
     assert not has_noise(np.repeat(np.arange(20.0), 10))
+    assert not has_noise(np.zeros(200))
     assert has_noise(np.round(smooth + np.random.default_rng(1).normal(0.0, 3e-4, 200), 4))

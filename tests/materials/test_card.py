@@ -294,6 +294,10 @@ def test_an_entry_that_does_not_fit_is_named_by_its_place(
         MaterialCard.from_document(document)
 
 
+def test_what_is_hashed_is_sorted_text_on_one_line_in_its_own_letters() -> None:
+    assert canonical_json({"unit": "µm", "at": [1, 2.5]}) == '{"at":[1,2.5],"unit":"µm"}'
+
+
 def test_what_json_cannot_say_is_never_written() -> None:
     for number in (math.nan, math.inf):
         with pytest.raises(ValueError, match="not JSON compliant"):

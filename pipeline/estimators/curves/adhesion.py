@@ -52,7 +52,6 @@ class Adhesive:
     tabor : mu `[1]`
     depth0 : of the surface, undeformed `[m]`
     first, last : samples that were fitted, as indices into the whole curve
-    residual_sd : scatter of the depth about the curve `[m]`
     """
 
     model: str
@@ -65,7 +64,6 @@ class Adhesive:
     depth0: float
     first: int
     last: int
-    residual_sd: float
 
 
 def tabor_parameter(radius_m: float, work: float, reduced_modulus: float, reach_m: float) -> float:
@@ -117,12 +115,11 @@ def fit_adhesive(
     x, y = load[chosen], depth[chosen]
     found = {}
     for model in MODELS:
-        modulus, u, surface, residual = _fit(model, x / pull_off, y, pull_off, radius_m)
+        modulus, u, surface = _fit(model, x / pull_off, y, pull_off, radius_m)
         work = pull_off / (_PULL_OFF[model] * math.pi * radius_m)
         mu = tabor_parameter(radius_m, work, modulus, reach_m)
         found[model] = Adhesive(
             model, modulus, u, 0.0, pull_off, work, mu, surface, int(chosen[0]), int(chosen[-1]),
-            residual,
         )  # fmt: skip
     if found["JKR"].tabor > _JKR_ABOVE:
         best = found["JKR"]
@@ -140,7 +137,7 @@ def fit_adhesive(
     change = abs(moved / best.reduced_modulus - 1.0) / _STEP
     return Adhesive(
         best.model, best.reduced_modulus, best.u_scatter, change, pull_off, best.work, best.tabor,
-        best.depth0, best.first, best.last, best.residual_sd,
+        best.depth0, best.first, best.last,
     )  # fmt: skip
 
 
@@ -157,8 +154,8 @@ def shape(model: str, p: FloatArray) -> FloatArray:
 
 def _fit(
     model: str, p: FloatArray, depth: FloatArray, pull_off: float, radius_m: float
-) -> tuple[float, float, float, float]:
-    """E*, its relative standard error, the surface's depth and the scatter of the depth."""
+) -> tuple[float, float, float]:
+    """E*, its relative standard error and the surface's depth."""
     x = shape(model, p)
     dx, dy = x - x.mean(), depth - depth.mean()
     scale = float(dx @ dy) / float(dx @ dx)
@@ -169,5 +166,4 @@ def _fit(
     independent = independent_samples(residual, 2, float(dy @ dy))
     u = standard_errors(np.column_stack([np.ones_like(x), x]), residual, independent)[1] / scale
     modulus = 3.0 * pull_off / math.sqrt(radius_m) * scale**-1.5
-    sd = math.sqrt(float(residual @ residual) / (x.size - 2))
-    return modulus, 1.5 * float(u), surface, sd
+    return modulus, 1.5 * float(u), surface

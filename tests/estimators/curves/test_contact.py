@@ -10,6 +10,8 @@ from deamat.core.errors import FitRefused
 from deamat.estimators.curves.contact import (
     Contact,
     fit_contact,
+    fit_in_contact,
+    has_air,
     independent_samples,
     standard_errors,
 )
@@ -146,3 +148,50 @@ def test_what_has_no_contact_point_is_refused(
     with pytest.raises(FitRefused) as caught:
         fit(1.5, force, depth)
     assert caught.value.reason == message
+
+
+INSIDE = np.linspace(0.0, 4.0, 200)  # a record that starts in contact, or hardly before
+
+
+def inside(exponent: float, depth0: float) -> FloatArray:
+    rise: FloatArray = np.maximum(INSIDE - depth0, 0.0) ** exponent
+    return OFFSET + K * rise
+
+
+@pytest.mark.parametrize("depth0", [-7.0, -0.4, 0.5 * (INSIDE[8] + INSIDE[9])])
+@pytest.mark.parametrize("exponent", [1.5, 2.0])
+def test_a_contact_point_before_the_record_or_up_to_its_tenth_sample_is_found(
+    exponent: float, depth0: float
+) -> None:
+    found = fit_in_contact(INSIDE, inside(exponent, depth0), exponent, 10, 20)
+    assert found.depth0 == pytest.approx(depth0, abs=1e-4)
+    assert found.stiffness == pytest.approx(K, rel=1e-4)
+    assert found.offset == pytest.approx(OFFSET, abs=1e-2)
+
+
+def test_a_record_from_inside_contact_has_no_tilt_but_says_what_one_would_change() -> None:
+    noise = np.random.default_rng(8).normal(0.0, 0.02, INSIDE.size)
+    force = inside(1.5, -0.4) + noise
+    found = fit_in_contact(INSIDE, force, 1.5, 10, 20)
+    assert found.tilt == 0.0
+    tilted = fit_in_contact(INSIDE, force + 1e-3 * INSIDE, 1.5, 10, 20)
+    change = (tilted.stiffness - found.stiffness) / found.stiffness
+    assert 1e-3 * found.per_tilt == pytest.approx(change, rel=0.01)
+
+
+def test_the_noise_of_the_load_comes_out() -> None:
+    noise = np.random.default_rng(9).normal(0.0, 0.02, DEPTH.size)
+    assert fit(1.5, load(1.5) + noise).residual_sd == pytest.approx(0.02, rel=0.1)
+    force = inside(1.5, -0.4) + noise[: INSIDE.size]
+    found = fit_in_contact(INSIDE, force, 1.5, 10, 20)
+    assert found.residual_sd == pytest.approx(0.02, rel=0.1)
+
+
+@pytest.mark.parametrize("exponent", [1.5, 2.0])
+def test_air_is_told_from_contact_only_where_there_is_some(exponent: float) -> None:
+    noise = np.random.default_rng(10).normal(0.0, 0.02, DEPTH.size)
+    force = load(exponent) + noise
+    assert has_air(fit(exponent, force), fit_in_contact(DEPTH, force, exponent, 10, 20))
+    force = inside(exponent, 0.1) + noise[: INSIDE.size]
+    with_air = fit_contact(INSIDE, force, exponent, 3, 20)
+    assert not has_air(with_air, fit_in_contact(INSIDE, force, exponent, 10, 20))

@@ -10,12 +10,12 @@ from deamat.estimators.curves.lone import lone_readings, without
 LINE = np.linspace(0.0, 1.0, 101)
 
 
-@pytest.mark.parametrize("wild", [0.0, -1.0, 0.6, 0.4, 5.0, 99999.0, 1e6])
+@pytest.mark.parametrize("wild", [0.0, -1.0, 0.4, 0.2, 5.0, 99999.0, 1e6])
 def test_a_reading_off_both_neighbours_is_found_and_replaced_by_their_mean(wild: float) -> None:
     values = LINE.copy()
-    values[50] = wild
+    values[30] = wild
     lone = lone_readings(values)
-    assert lone.tolist() == [50]
+    assert lone.tolist() == [30]
     assert without(values, lone).tolist() == pytest.approx(LINE.tolist())
 
 

@@ -59,9 +59,12 @@ def test_more_specimens_see_more() -> None:
     assert [round(f.weak_fraction, 4) for f in found] == [0.2589, 0.0582, 0.0060]
 
 
-def test_what_is_seen_of_many_specimens_is_less_by_the_root_of_their_number() -> None:
-    some, many = (_departure((0,) * n, 1, 0.8, 0.05, 0.005)[0] for n in (400, 1600))
-    assert many == pytest.approx(0.5 * some, rel=0.05)
+@pytest.mark.parametrize("power", [0.8, 1.0])  # reached, not reached
+def test_what_is_seen_of_many_specimens_is_less_by_the_root_of_their_number(power: float) -> None:
+    some, many = (_departure((0,) * n, 1, power, 0.05, 0.005) for n in (400, 1600))
+    assert many[0] == pytest.approx(0.5 * some[0], rel=0.05)
+    assert some[1] == many[1]
+    assert (some[1] == power) == (power < 1.0)
 
 
 def test_neither_unit_nor_order_matters() -> None:
