@@ -265,15 +265,39 @@ def register(
 
 
 @cli.command()
-@click.option("--seed", type=int, required=True, help="same seed, same bytes")
-@click.option("--out", type=click.Path(path_type=Path, file_okay=False), required=True)
-def simulate(seed: int, out: Path) -> None:
+@click.option("--seed", type=int, help="same seed, same bytes")
+@click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="folder for --raw")
+@click.option("--situation", metavar="NAME", help="a fault that laboratories have [default: none]")
+@click.option("--severity", type=float, help="of the situation, 0: no fault [default: middle one]")
+@click.option("--list", "list_", is_flag=True, help="list the situations and their severities")
+def simulate(
+    seed: int | None, out: Path | None, situation: str | None, severity: float | None, list_: bool
+) -> None:
     """Write a SYNTHETIC campaign into --out, a folder for --raw; its truth into OUT.truth.json."""
-    from deamat.twin.campaign import simulate as simulate_campaign
+    if list_:
+        from deamat.twin.situations.written import listed
 
+        click.echo(listed())
+        return
+    if seed is None or out is None:
+        raise click.UsageError("--seed and --out are needed (or --list)")
     out = out.resolve()
     truth = out.with_name(f"{out.name}.truth.json")
-    click.echo(f"SYNTHETIC campaign {simulate_campaign(out, seed, truth)}, its truth {truth}")
+    if situation is None:
+        from deamat.twin.campaign import simulate as simulate_campaign
+
+        if severity is not None:
+            raise click.UsageError("--severity is that of a --situation")
+        written = simulate_campaign(out, seed, truth)
+    else:
+        from deamat.twin.situations.written import situation_named, write_situation
+
+        found = situation_named(situation)
+        if severity is None:
+            severity = found.severities[len(found.severities) // 2]
+        truth = out.with_name(f"{out.name}.{situation}.truth.json")
+        written = write_situation(out, found, severity, seed, truth)
+    click.echo(f"SYNTHETIC campaign {written}, its truth {truth}")
 
 
 def _pair(text: str) -> tuple[str, str]:

@@ -102,8 +102,12 @@ class Runner:
         register = TECHNIQUES[given.technique].register.file
         contents = {f"{folder}/{name}": data for name, data in given.files.items()}
         contents[f"{folder}/{register}"] = given.register
-        self._write(contents)
         contents[f"{CAMPAIGN}/campaign.toml"] = _CAMPAIGN_TOML.encode()
+        return self.whole(contents, budget_s)
+
+    def whole(self, contents: Mapping[str, bytes], budget_s: float = BUDGET_s) -> Outcome:
+        """Run campaigns, given as path below `raw/` to content."""
+        self._write(contents)
         try:
             with within(budget_s), warnings.catch_warnings():
                 warnings.simplefilter("error")  # what a library mutters ends on somebody's screen

@@ -22,12 +22,17 @@ class Made:
     truth : the right value of the property, in SI
     naive : what a short script says of the same numbers, in SI
     conditions : which record is meant, where the property has several
+    elsewhere : further files, path relative to the campaign to content
+    misstated : the fault is in what a row says of its specimen, not in the value: the value may be
+        right, and yet what it is said to be of is not
     """
 
     files: Mapping[str, bytes]
     truth: float
     naive: float
     conditions: Mapping[str, Condition] = field(default_factory=dict)
+    elsewhere: Mapping[str, bytes] = field(default_factory=dict)
+    misstated: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,1 @@
+"""How often a situation that laboratories have ends in a wrong number that nothing warns of."""
