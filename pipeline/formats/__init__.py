@@ -30,6 +30,7 @@ FORMATS: tuple[Format, ...] = tuple(
         "mts",
         "ndj8s",
         "nexygen",
+        "novocontrol",
         "phantom",
         "rheocompass",
         "rheodata",

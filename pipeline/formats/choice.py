@@ -12,7 +12,11 @@ from deamat.formats.structure import Heading
 from deamat.formats.vocabulary import ASKED, Asked, meaning_among, plain_label, vocabulary
 
 _HERTZ_PER_RADIAN = 1.0 / (2.0 * math.pi)
-_WITHOUT_UNIT = frozenset(("loss_tangent",))  # a pure number by its nature; a strain may be in %
+# pure numbers by their nature; a strain may be in %
+_WITHOUT_UNIT = frozenset(
+    ("loss_tangent", "relative_permittivity", "relative_loss_index", "electric_modulus",
+     "electric_modulus_loss")
+)  # fmt: skip
 _NEGATED = frozenset(("reactance_ohm", "phase_rad"))  # often written as -X
 
 
@@ -90,6 +94,9 @@ def choose(heading: Heading, technique: str) -> Choice:
 
 def _column(label: str, written: str, asked: Asked) -> _Column:
     means = dict(meaning_among(label, asked.quantities))
+    whole = f"{label}({written})"
+    if not means and written and (function := meaning_among(whole, asked.quantities)):
+        return _Column(whole, "", "", "", "", dict(function))  # `Tan(Delta)` has no unit
     wanted = {vocabulary()[name].unit for name in means}
     try:
         unit = unit_as_written(written, next(iter(wanted)) if len(wanted) == 1 else "") or ""
@@ -212,5 +219,9 @@ def _missing(columns: Sequence[_Column], name: str) -> str:
 def _said(name: str) -> str:
     """`shear_rate_per_s` in words: `shear rate`."""
     unit = vocabulary()[name].unit
-    ending = "" if unit == "1" else "_" + unit.replace("1/", "per_").replace(".", "")
+    ending = (
+        ""
+        if unit == "1"
+        else "_" + unit.replace("1/", "per_").replace("/", "_per_").replace(".", "")
+    )
     return name.removesuffix(ending).replace("_", " ")

@@ -53,6 +53,10 @@ ASKED: Mapping[str, Asked] = {
             ("frequency_Hz", "impedance_ohm", "phase_rad"),
             ("frequency_Hz", "parallel_capacitance_F", "parallel_resistance_ohm"),
             ("frequency_Hz", "series_capacitance_F", "series_resistance_ohm"),
+            ("frequency_Hz", "relative_permittivity", "relative_loss_index"),
+            ("frequency_Hz", "relative_permittivity", "loss_tangent"),
+            ("frequency_Hz", "relative_permittivity", "conductivity_S_per_m"),
+            ("frequency_Hz", "electric_modulus", "electric_modulus_loss"),
         )
     ),
     "breakdown": Asked((("time_s", "voltage_V"),), ("current_A",)),

@@ -1,4 +1,4 @@
-"""Scopes, LabVIEW text and E4990A traces: plain tables once a few lines are written otherwise."""
+"""Scopes, LabVIEW text, E4990A and WinDETA: plain tables once a few lines are written otherwise."""
 
 from __future__ import annotations
 
@@ -27,12 +27,22 @@ E4990A = (
     "Frequency(Hz), R(Ohm)-data, X(Ohm)-data\n+1.0e+01, +4.9e+05, -1.2e+08\n"
     "+2.0e+01, +2.4e+05, -6.1e+07\nEND\n"
 )
-LINES = {"rigol": (3, 5), "tektronix": (1, 5), "lvm": (15, 17), "e4990a": (5, 6)}
-FILES = {"rigol": RIGOL, "tektronix": TEKTRONIX, "lvm": LVM, "e4990a": E4990A}
+NOVOCONTROL = (
+    "X1, 17.2.2025, 11:19\nDiameter[mm] 4.0e+01  Thickness[mm] 5.0e-01\n"
+    "Fixed value(s) :  AC Volt  [Vrms]=1.0000e+00\n Freq. [Hz]\t Eps'    \t Eps''   \n"
+    "1.0e+02\t2.9e+00\t1.2e-02\n1.0e+01\t2.9e+00\t1.2e-02\n"
+)
+LINES = {
+    "rigol": (3, 5), "tektronix": (1, 5), "lvm": (15, 17), "e4990a": (5, 6), "novocontrol": (5, 6),
+}  # fmt: skip
+FILES = {
+    "rigol": RIGOL, "tektronix": TEKTRONIX, "lvm": LVM, "e4990a": E4990A,
+    "novocontrol": NOVOCONTROL,
+}  # fmt: skip
 
 
 def read(text: str) -> Recording:
-    technique = "permittivity" if text.startswith("!") else "breakdown"
+    technique = "permittivity" if text.startswith(("!", "X1")) else "breakdown"
     file = RawFile("x", text.encode(), technique=technique)
     return detect(file).read(file)
 

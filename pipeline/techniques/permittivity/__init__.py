@@ -22,8 +22,14 @@ TECHNIQUE = Technique(
     yields=YIELDS,
     needs=(MODULUS,),
     config=PermittivityConfig,
-    required=("thickness_m", "plate_length_m", "plate_width_m"),
-    optional=("micrometer_force_N", "anvil_diameter_m"),
+    required=(),  # a spectrometer's file states the film itself
+    optional=(
+        "thickness_m",
+        "plate_length_m",
+        "plate_width_m",
+        "micrometer_force_N",
+        "anvil_diameter_m",
+    ),
     reduce=reduce,
     summarise=summarise,
     figure=figure,

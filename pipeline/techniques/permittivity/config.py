@@ -85,6 +85,10 @@ class PermittivityConfig(Declared):
     u_edge_field: float = Field(
         default=0.2, ge=0, description="relative standard uncertainty of that correction, shared"
     )
+    u_stated_dimension: float = Field(
+        default=0.02, ge=0, description="relative standard uncertainty of thickness and diameter "
+        "where only a spectrometer's file states them, shared; a guess to be replaced",
+    )  # fmt: skip
     edge_flag: float = Field(
         default=0.01, gt=0, description="uncorrected edge field that is flagged, relative"
     )

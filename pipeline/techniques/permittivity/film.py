@@ -11,6 +11,7 @@ from deamat.core.quantity import Contribution, Quantity
 from deamat.core.records import Flag
 from deamat.core.technique import Context
 from deamat.core.units import from_si
+from deamat.estimators.dielectric.edge_field import vacuum_capacitance
 from deamat.estimators.dielectric.squeeze import (
     squeeze_sensitivity,
     squeezed_stretch,
@@ -32,6 +33,7 @@ class Film:
     area_m2, perimeter_m : of one plate
     budget : relative standard uncertainties of d/A `[1]`
     correction : what was done to the thickness, in words
+    edge_corrected : the capacitance comes without the edge field
     """
 
     thickness_m: float
@@ -41,11 +43,17 @@ class Film:
     perimeter_m: float
     budget: tuple[Contribution, ...]
     correction: str
+    edge_corrected: bool = False
 
     @property
     def squeeze(self) -> float:
         """Strain under the micrometer, `1 - d_read / d` `[1]`."""
         return 1.0 - self.read_m / self.thickness_m
+
+    @property
+    def empty_F(self) -> float:
+        """Capacitance of the plates alone, at the thickness as read `[F]`."""
+        return vacuum_capacitance(self.area_m2, self.read_m)
 
     @property
     def aspect(self) -> float:

@@ -20,6 +20,7 @@ from deamat.estimators.dielectric.sweep import (
     slope_per_decade,
 )
 from deamat.techniques.permittivity.card_point import CardPoint, card_point
+from deamat.techniques.permittivity.cell import says_nothing, stated_cell
 from deamat.techniques.permittivity.config import LOSS, PERMITTIVITY, PermittivityConfig
 from deamat.techniques.permittivity.faults import conduction_flags
 from deamat.techniques.permittivity.film import Film, film_flags, film_of
@@ -103,7 +104,8 @@ def reduce(
     Parameters
     ----------
     specimen : see `film_of` for the numbers
-    recording : frequency and one pair of `deamat.estimators.impedance.PAIRS`
+    recording : frequency and one pair of `PAIRS` (what a meter shows) or `MATERIAL_PAIRS` (what a
+        spectrometer computed, with the cell that its file states, else with the register's)
     context : with the compressive modulus among its needs
 
     Source: ASTM D150; LCR-6000 manual, 13.1 for the limits of C and D.
@@ -111,8 +113,8 @@ def reduce(
     config = context.config
     try:
         file = recorded(recording)
-        film = film_of(specimen.numbers, context)
-        spectrum = spectrum_of(file, context.machine.impedance, config)
+        film, empty_F = _film(specimen, file, context)
+        spectrum = spectrum_of(file, empty_F, context.machine.impedance, config)
     except FitRefused as error:
         return nothing_measured(specimen, (PERMITTIVITY, LOSS), error, recording)
     at: dict[str, Condition] = {"frequency_Hz": config.card_frequency_Hz}
@@ -140,6 +142,20 @@ def reduce(
     )
 
 
+def _film(
+    specimen: Specimen, file: Recording, context: Context[PermittivityConfig]
+) -> tuple[Film, float]:
+    """Take the film from its row, or from a file that states it, and the empty cell's F."""
+    cell = stated_cell(file.metadata)
+    if cell is None:
+        film = film_of(specimen.numbers, context)
+        return film, film.empty_F
+    if says_nothing(specimen.numbers):
+        return cell.film(context.config), cell.vacuum_F
+    film = film_of(specimen.numbers, context)
+    return replace(film, edge_corrected=cell.edge_corrected), cell.vacuum_F
+
+
 def _read(film: Film, point: CardPoint, curve: FilmSpectrum, config: PermittivityConfig) -> Reading:
     sound = point.spectrum
     resistance = series_resistance(sound.frequency_Hz, sound.series_capacitance_F, sound.loss)
@@ -147,8 +163,13 @@ def _read(film: Film, point: CardPoint, curve: FilmSpectrum, config: Permittivit
 
 
 def _curve(spectrum: Spectrum, film: Film, config: PermittivityConfig) -> FilmSpectrum:
-    permittivity, loss = permittivity_of(spectrum.capacitance_F, film, config.edge_field)
+    permittivity, loss = permittivity_of(spectrum.capacitance_F, film, _edge_field(film, config))
     return FilmSpectrum(spectrum.frequency_Hz, permittivity, loss)
+
+
+def _edge_field(film: Film, config: PermittivityConfig) -> str:
+    """Which correction is still to be made."""
+    return "none" if film.edge_corrected else config.edge_field
 
 
 def _permittivity(
@@ -157,7 +178,8 @@ def _permittivity(
     config, spectrum = reading.config, reading.spectrum
     value = reading.where.of(reading.permittivity) * reading.point.factor
     limit = reading.where.of(spectrum.limit * np.hypot(1.0, spectrum.loss))
-    edge = config.u_edge_field * reading.edge_fraction(config.edge_field)
+    edge_field = _edge_field(reading.film, config)
+    edge = config.u_edge_field * reading.edge_fraction(edge_field)
     budget = relative_lines(
         value,
         (
@@ -177,9 +199,9 @@ def _permittivity(
                 "impedance and declare the result",
             ),
         )
-    edge_words = (
-        "not corrected" if config.edge_field == "none" else f"of a {config.edge_field} film"
-    )
+    edge_words = "not corrected" if edge_field == "none" else f"of a {edge_field} film"
+    if reading.film.edge_corrected:
+        edge_words = "corrected by the spectrometer's software"
     return MeasuredValue(
         key=PERMITTIVITY,
         quantity=Quantity.from_budget(value, "1", budget),
@@ -305,7 +327,8 @@ def _flags(reading: Reading, level_said: bool) -> tuple[Flag, ...]:
 def _edge_flags(reading: Reading) -> tuple[Flag, ...]:
     config = reading.config
     flush, overhanging = (reading.edge_fraction(edge) for edge in ("flush", "overhanging"))
-    if config.edge_field != "none" or flush <= config.edge_flag:
+    corrected = reading.film.edge_corrected or config.edge_field != "none"
+    if corrected or flush <= config.edge_flag:
         return ()
     return (
         Flag(

@@ -16,9 +16,15 @@ from deamat.estimators.dielectric.edge_field import edge_terms, vacuum_capacitan
 from deamat.estimators.dielectric.impedance import (
     PAIRS,
     ComplexArray,
+    Pair,
     complex_capacitance,
     impedance,
     loss_tangent,
+)
+from deamat.estimators.dielectric.material_pairs import (
+    MATERIAL_PAIRS,
+    MaterialPair,
+    complex_permittivity,
 )
 from deamat.estimators.dielectric.repeats import sweep_numbers
 from deamat.techniques.permittivity.config import PermittivityConfig
@@ -77,9 +83,14 @@ class Spectrum:
 
 
 def spectrum_of(
-    recording: Recording, accuracy: LcrAccuracy, config: PermittivityConfig
+    recording: Recording, empty_F: float, accuracy: LcrAccuracy, config: PermittivityConfig
 ) -> Spectrum:
     """Take the usable points of a recording as complex capacitance.
+
+    Parameters
+    ----------
+    empty_F : capacitance of the empty plates, with which a spectrometer's software computed
+        permittivities `[F]`
 
     Raises
     ------
@@ -87,13 +98,13 @@ def spectrum_of(
         positive capacitance
     """
     columns = recording.columns
-    modes = [m for m, p in PAIRS.items() if p.primary in columns and p.secondary in columns]
+    shows: dict[str, Pair | MaterialPair] = {**PAIRS, **MATERIAL_PAIRS}
+    modes = [m for m, p in shows.items() if p.primary in columns and p.secondary in columns]
     if "frequency_Hz" not in columns or len(modes) != 1:
         raise FitRefused(
             f"the file holds {', '.join(columns)}, where a frequency and one of "
-            f"{', '.join(PAIRS)} belong"
+            f"{', '.join(shows)} belong"
         )
-    pair = PAIRS[modes[0]]
     frequency = columns["frequency_Hz"]
     good = np.ones(frequency.size, dtype=np.bool_)
     if "over_range" in columns:
@@ -107,9 +118,12 @@ def spectrum_of(
     order = np.flatnonzero(good)[np.argsort(frequency[good], kind="stable")]
     sweep = sweep_numbers(frequency)[order]
     f = frequency[order]
-    capacitance = complex_capacitance(
-        modes[0], f, columns[pair.primary][order], columns[pair.secondary][order]
-    )
+    pair = shows[modes[0]]
+    primary, secondary = columns[pair.primary][order], columns[pair.secondary][order]
+    if modes[0] in PAIRS:
+        capacitance = complex_capacitance(modes[0], f, primary, secondary)
+    else:
+        capacitance = empty_F * complex_permittivity(modes[0], f, primary, secondary)
     lines = recording.source.first_line + order
     _insist_on_capacitance(f, capacitance, lines)
     limit = accuracy.limit(
