@@ -7,18 +7,22 @@ import sqlite3
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
 
 import click
 
 from deamat import __version__
+from deamat.commands.options import (
+    INTERNAL,
+    REJECTED,
+    STOPPED,
+    WELL,
+    WRONG,
+    as_json_option,
+    chosen_folders,
+    folders_options,
+)
 from deamat.core.errors import PipelineError, RawFileError
 from deamat.run.boundary import attempt
-from deamat.run.folders import Folders
-
-WELL, REJECTED, WRONG, INTERNAL, STOPPED = 0, 1, 2, 3, 4
-
-F = TypeVar("F", bound=Callable[..., Any])
 
 _EPILOG = """\b
 Exit codes:
@@ -30,38 +34,6 @@ Exit codes:
 """
 
 
-def _home() -> Path:
-    """The folder with the Makefile: the nearest one upwards that has `raw/` and `config/`."""
-    here = Path.cwd()
-    for folder in (here, *here.parents):
-        if (folder / "raw").is_dir() and (folder / "config").is_dir():
-            return folder
-    return here
-
-
-def _folders(command: F) -> F:
-    """Return a command the options --raw, --config and --processed."""
-    for name, what in (
-        ("processed", "results"),
-        ("config", "configuration"),
-        ("raw", "raw data"),
-    ):
-        command = click.option(
-            f"--{name}",
-            type=click.Path(file_okay=False, path_type=Path),
-            help=f"{what} [default: {name}/ beside the Makefile]",
-        )(command)
-    return command
-
-
-def _where(raw: Path | None, config: Path | None, processed: Path | None) -> Folders:
-    home = _home()
-    return Folders(raw or home / "raw", config or home / "config", processed or home / "processed")
-
-
-_json = click.option("--json", "as_json", is_flag=True, help="print JSON for a program")
-
-
 @click.group(epilog=_EPILOG, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__)
 def cli() -> None:
@@ -69,8 +41,8 @@ def cli() -> None:
 
 
 @cli.command("all")
-@_folders
-@_json
+@folders_options
+@as_json_option
 @click.option("--workers", type=click.IntRange(1), help="processes [default: one per core]")
 @click.option("--verify", is_flag=True, help="hash every file again, whatever its time of change")
 def all_(
@@ -84,7 +56,7 @@ def all_(
     """Reprocess raw/ into processed/: only what changed is done again."""
     from deamat.run import run_all, summary
 
-    folders = _where(raw, config, processed)
+    folders = chosen_folders(raw, config, processed)
     document = run_all(folders, workers, _silent if as_json else _progress(), verify)
     if as_json:
         click.echo(json.dumps(document, indent=1))
@@ -96,13 +68,13 @@ def all_(
 
 
 @cli.command()
-@_folders
-@_json
+@folders_options
+@as_json_option
 def explain(raw: Path | None, config: Path | None, processed: Path | None, as_json: bool) -> None:
     """Say what a run would redo now and why, and what the last run redid."""
     from deamat.run import explain as explain_run
 
-    said = explain_run(_where(raw, config, processed))
+    said = explain_run(chosen_folders(raw, config, processed))
     if as_json:
         click.echo(json.dumps(said, indent=1))
         return
@@ -113,22 +85,22 @@ def explain(raw: Path | None, config: Path | None, processed: Path | None, as_js
 
 
 @cli.command()
-@_folders
-@_json
+@folders_options
+@as_json_option
 def audit(raw: Path | None, config: Path | None, processed: Path | None, as_json: bool) -> None:
     """Hash every raw file again and account for each of them exactly once."""
     from deamat.run.audit import audit as audit_run
     from deamat.run.audit import audit_text
 
-    document = audit_run(_where(raw, config, processed))
+    document = audit_run(chosen_folders(raw, config, processed))
     click.echo(json.dumps(document, indent=1) if as_json else audit_text(document))
     sys.exit(document["exit_code"])
 
 
 @cli.command()
 @click.argument("material")
-@_folders
-@_json
+@folders_options
+@as_json_option
 def card(
     material: str, raw: Path | None, config: Path | None, processed: Path | None, as_json: bool
 ) -> None:
@@ -136,7 +108,7 @@ def card(
     from deamat.materials.database import open_database
     from deamat.materials.present import card_text
 
-    with open_database(_where(raw, config, processed).processed) as database:
+    with open_database(chosen_folders(raw, config, processed).processed) as database:
         found = database[material]
         document = found.to_document()
     click.echo(json.dumps(document, indent=1) if as_json else card_text(found))
@@ -148,8 +120,8 @@ def card(
 @click.option(
     "--where", "-w", multiple=True, metavar="KEY=VALUE", help="a condition: age='2 months'"
 )
-@_folders
-@_json
+@folders_options
+@as_json_option
 def trace(
     material: str,
     property_key: str,
@@ -164,20 +136,20 @@ def trace(
     from deamat.materials.trace import trace as trace_value
 
     conditions = dict(_pair(w) for w in where)
-    with open_database(_where(raw, config, processed).processed) as database:
+    with open_database(chosen_folders(raw, config, processed).processed) as database:
         chain = trace_value(database, material, property_key, **conditions)
     click.echo(json.dumps(chain.to_document(), indent=1) if as_json else chain.text())
 
 
 @cli.command()
-@_folders
-@_json
+@folders_options
+@as_json_option
 def paper(raw: Path | None, config: Path | None, processed: Path | None, as_json: bool) -> None:
     """Write the article's tables and figures, printed beside recomputed, into processed/paper/."""
     from deamat.report.paper.entry import to_json
     from deamat.report.paper.write import write_paper
 
-    page, entries = write_paper(_where(raw, config, processed).processed)
+    page, entries = write_paper(chosen_folders(raw, config, processed).processed)
     if as_json:
         click.echo(to_json(entries), nl=False)
         return
@@ -215,8 +187,8 @@ def paper(raw: Path | None, config: Path | None, processed: Path | None, as_json
 @click.option(
     "--figures", type=click.Path(file_okay=False, path_type=Path), help="draw into this folder"
 )
-@_folders
-@_json
+@folders_options
+@as_json_option
 def design(
     name: str | None,
     de: str | None,
@@ -244,14 +216,18 @@ def design(
         dict(_pair(w) for w in where), cards,
     )  # fmt: skip
     document, text = run_design(
-        _where(raw, config, processed), asked, compare=compare, pareto=pareto, figures=figures
+        chosen_folders(raw, config, processed),
+        asked,
+        compare=compare,
+        pareto=pareto,
+        figures=figures,
     )
     click.echo(json.dumps(document, indent=1) if as_json else text, nl=as_json)
 
 
 @cli.command()
 @click.argument("campaign")
-@_folders
+@folders_options
 @click.option("--accept", is_flag=True, help="accept changed and missing files as well")
 def register(
     campaign: str, raw: Path | None, config: Path | None, processed: Path | None, accept: bool
@@ -259,7 +235,7 @@ def register(
     """Write or extend the manifest of CAMPAIGN: the one command that writes into raw/."""
     from deamat.run.register import register as register_campaign
 
-    result = register_campaign(_where(raw, config, processed).raw, campaign, accept)
+    result = register_campaign(chosen_folders(raw, config, processed).raw, campaign, accept)
     click.echo(result.text)
     sys.exit(REJECTED if result.pending else WELL)
 
