@@ -9,9 +9,9 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Self, TypeVar
 
-from pydantic import BaseModel, Field, RootModel, ValidationError, field_validator
+from pydantic import BaseModel, Field, RootModel, ValidationError, field_validator, model_validator
 
 from deamat.core.errors import ConfigError
 from deamat.core.instruments import Declared, Instruments
@@ -30,17 +30,42 @@ class Material(Declared):
 
 
 class Exclusion(Declared):
-    """One file that is deliberately left out, and why."""
+    """One file or one specimen that is deliberately left out, and why."""
 
-    path: str = Field(description="relative to raw/, with forward slashes")
+    path: str | None = Field(
+        default=None, description="of a file, relative to raw/, with forward slashes"
+    )
+    specimen: str | None = Field(
+        default=None, description="`campaign/technique/specimen`, with a file or without"
+    )
     reason: str = Field(min_length=3)
+
+    @property
+    def target(self) -> str:
+        """What it leaves out: the path or the specimen."""
+        return self.path or self.specimen or ""
+
+    @model_validator(mode="after")
+    def _names_one(self) -> Self:
+        if (self.path is None) == (self.specimen is None):
+            raise ValueError("an exclusion names either a path or a specimen")
+        return self
 
     @field_validator("path")
     @classmethod
-    def _below_raw(cls, path: str) -> str:
+    def _below_raw(cls, path: str | None) -> str | None:
+        if path is None:
+            return None
         if path.startswith("/") or "\\" in path or {"..", ".", ""} & set(path.split("/")):
             raise ValueError("a path relative to raw/ with forward slashes and without '..'")
         return path
+
+    @field_validator("specimen")
+    @classmethod
+    def _in_three_parts(cls, specimen: str | None) -> str | None:
+        if specimen is not None and not all([*specimen.split("/"), specimen.count("/") == 2]):
+            raise ValueError("a specimen is named as campaign/technique/specimen")
+        return specimen
 
 
 class Exclusions(Declared):

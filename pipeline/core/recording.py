@@ -79,3 +79,8 @@ class Specimen:
     notes: Mapping[str, str]
     register: str
     line: int
+
+    @property
+    def place(self) -> str:
+        """How exclusions, messages and the state name it: `campaign/technique/specimen`."""
+        return f"{self.campaign}/{self.technique}/{self.id}"

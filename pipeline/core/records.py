@@ -91,6 +91,32 @@ class Refusal:
     ] = False
 
 
+@dataclass(frozen=True, slots=True)
+class Excluded:
+    """A specimen that was left out on purpose, and why."""
+
+    ENTRY: ClassVar = Entry(
+        "exclusion",
+        "exclusions",
+        "A specimen that was left out on purpose: it is in no value.",
+        identity=("material", "campaign", "technique", "specimen"),
+    )
+
+    campaign: Annotated[str, ID]
+    technique: Annotated[str, SAID]
+    specimen: Annotated[str, ID]
+    reason: Annotated[str, SAID, "As `config/exclusions.toml` says it."]
+    material: Annotated[str, Mark.OF_THE_CARD]
+    register: Annotated[str, SAID, "Register, relative to raw/."]
+    register_line: Annotated[int, LINE]
+    path: Annotated[str | None, "Raw file, relative to raw/; left out if it has none."] = None
+
+    @property
+    def place(self) -> str:
+        """How exclusions and messages name it: `campaign/technique/specimen`."""
+        return f"{self.campaign}/{self.technique}/{self.specimen}"
+
+
 class Result(Protocol):
     """What a technique makes of one specimen, in typed fields of its own."""
 

@@ -42,6 +42,7 @@ class Mark(Enum):
     OF_THE_CARD = "stands once on the card, not in each of its entries"
     IN_FRONT = "its column stands before those of the others"
     ALWAYS = "written also where it has its default, where other such fields are left out"
+    IF_ANY = "a list that is left out where it is empty"
     NO_COLUMN = "follows from another column"
 
 
@@ -168,8 +169,8 @@ def _marks(hint: Any) -> tuple[Any, ...]:
 
 def _field(name: str, hint: Any, default: Any) -> Field:
     told = _marks(hint)
-    listed = isinstance(default, tuple)  # a list that is empty says so
     marks = frozenset(mark for mark in told if isinstance(mark, Mark))
+    listed = isinstance(default, tuple) and Mark.IF_ANY not in marks  # an empty list says so
     return Field(
         next((mark.name for mark in told if isinstance(mark, Called)), name),
         (name,),

@@ -17,12 +17,13 @@ from deamat.core.errors import CardError, MissingProperty
 from deamat.core.kinds import CONDITIONS_KIND, ID, SAID, Kind
 from deamat.core.present import readable_record
 from deamat.core.quantity import Quantity
-from deamat.core.records import Condition, Law, PropertyRecord, Refusal
+from deamat.core.records import Condition, Excluded, Law, PropertyRecord, Refusal
 from deamat.core.schema import (
     After,
     Called,
     Entry,
     Field,
+    Mark,
     check_names,
     document_of,
     fields_of,
@@ -86,6 +87,11 @@ class MaterialCard:
         tuple[Refusal, ...],
         Called("refused"),
         "Values that were asked for and not given, and why.",
+    ] = ()
+    excluded: Annotated[
+        tuple[Excluded, ...],
+        Mark.IF_ANY,
+        "Specimens that were left out on purpose, and why. Left out where there are none.",
     ] = ()
 
     def keys(self) -> tuple[str, ...]:
@@ -162,10 +168,12 @@ class MaterialCard:
             unit, a condition outside the closed list, a card that hides a synthetic campaign
         """
         entries: list[PropertyRecord | Law | Refusal] = [*self.records, *self.laws, *self.refusals]
-        for entry in entries:
-            if entry.material != self.material:
+        owners = [(entry.key, entry.material) for entry in entries]
+        owners += [(f"exclusion of {entry.specimen}", entry.material) for entry in self.excluded]
+        for what, material in owners:
+            if material != self.material:
                 raise CardError(
-                    f"a {entry.key} of {entry.material} cannot stand on the card of {self.material}"
+                    f"a {what} of {material} cannot stand on the card of {self.material}"
                 )
         if any(c.synthetic for c in self.campaigns) and not self.synthetic:
             raise CardError(f"{self.material} has a synthetic campaign, its card must say so")
@@ -174,6 +182,7 @@ class MaterialCard:
             records=_in_order(map(doc.canonical_record, self.records)),
             laws=_in_order(map(doc.canonical_law, self.laws)),
             refusals=tuple(sorted(self.refusals, key=_refusal_order)),
+            excluded=tuple(sorted(self.excluded, key=_exclusion_order)),
             campaigns=tuple(sorted(self.campaigns, key=lambda c: c.campaign)),
         )
 
@@ -228,6 +237,8 @@ class MaterialCard:
 
 
 def _value(field: Field, content: Mapping[str, Any]) -> Any:
+    if field.name not in content:
+        return field.default
     told, cls = content[field.name], field.kind.rows_of
     if cls is None:
         return field.kind.read(told)
@@ -260,6 +271,10 @@ def _in_order(entries: Iterable[E]) -> tuple[E, ...]:
 def _refusal_order(refusal: Refusal) -> tuple[str, str, str, str]:
     rest = doc.canonical_json(document_of(refusal))
     return refusal.key, refusal.campaign, refusal.specimen or "", rest
+
+
+def _exclusion_order(excluded: Excluded) -> tuple[str, str, str]:
+    return excluded.campaign, excluded.technique, excluded.specimen
 
 
 def read_card(path: str | Path) -> MaterialCard:

@@ -53,6 +53,10 @@ def card_text(card: MaterialCard) -> str:
         for key in refused:
             for reason in refusal_reasons(card.refusals, key):
                 lines += _wrapped(f"{key}: {reason}")
+    if card.excluded:
+        lines += ["", "Excluded"]
+        for left_out in card.excluded:
+            lines += _wrapped(f"{left_out.place}: {left_out.reason}")
     return "\n".join(lines)
 
 

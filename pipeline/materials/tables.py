@@ -128,11 +128,11 @@ def card_rows(card: Document, ids: Iterator[int]) -> Iterator[tuple[str, Row]]:
     yield entry_of(MaterialCard).table, tuple(_cells(card, MaterialCard))
     for field in listed_in(MaterialCard):
         cls = field.kind.rows_of
-        for entry in card[field.name]:
+        for entry in card.get(field.name, ()):
             number = () if entry_of(cls).identity else (next(ids),)
             yield entry_of(cls).table, (*number, card["material"], *_cells(entry, cls))
             for owned in listed_in(cls):
-                yield from _owned_rows(owned.kind.rows_of, entry[owned.name], *number)
+                yield from _owned_rows(owned.kind.rows_of, entry.get(owned.name, ()), *number)
 
 
 def _owned_rows(cls: Any, entries: Iterable[Any], number: int) -> Iterator[tuple[str, Row]]:

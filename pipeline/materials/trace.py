@@ -20,7 +20,15 @@ from deamat.core.present import (
 )
 from deamat.core.properties import property_key
 from deamat.core.quantity import Contribution, Quantity
-from deamat.core.records import Condition, Detail, Law, Origin, PropertyRecord, Refusal
+from deamat.core.records import (
+    Condition,
+    Detail,
+    Excluded,
+    Law,
+    Origin,
+    PropertyRecord,
+    Refusal,
+)
 from deamat.core.schema import document_of, fields_of
 from deamat.materials.card import MaterialCard
 from deamat.materials.database import Database
@@ -41,6 +49,7 @@ class Trace:
     entry : the record, or the law where there is no record; None if the key was only refused
     refusals : of this key
     provenance : what made the release
+    excluded : specimens that were left out of it
     """
 
     card: MaterialCard
@@ -48,6 +57,7 @@ class Trace:
     entry: Entry | None
     refusals: tuple[Refusal, ...]
     provenance: Provenance
+    excluded: tuple[Excluded, ...] = ()
 
     def text(self) -> str:
         """Write the trace for people: readable units, the SI value beside."""
@@ -81,7 +91,7 @@ def trace(db: Database, material: str, key: str, **conditions: Condition | None)
         entry = card.law(key, **conditions)
     elif not refusals:
         card.record(key)  # raises, and says what there is
-    return Trace(card, key, entry, refusals, db.provenance())
+    return Trace(card, key, entry, refusals, db.provenance(), _excluded(card, key, entry))
 
 
 # --- what the text and the JSON form both need
@@ -93,11 +103,27 @@ def percent_of_variance(budget: Sequence[Contribution]) -> list[float]:
     return [100.0 * c.u**2 / total if total else 0.0 for c in budget]
 
 
+def _excluded(card: MaterialCard, key: str, entry: Entry | None) -> tuple[Excluded, ...]:
+    """Find the specimens of the tests of a key that were left out, those of its campaign alone."""
+    if not card.excluded:
+        return ()
+    tests = _tests_of(key)
+    return tuple(
+        left_out
+        for left_out in card.excluded
+        if left_out.technique in tests and (entry is None or entry.campaign == left_out.campaign)
+    )
+
+
+def _tests_of(key: str) -> set[str]:
+    from deamat.techniques import TECHNIQUES  # imports every room: only few traces need them
+
+    return {t.key for t in TECHNIQUES.values() if key in t.yields}
+
+
 def _refusal_places(refusal: Refusal, card: MaterialCard) -> list[str]:
     """Say where the refused specimen's data stand, as far as another value of its test tells."""
-    from deamat.techniques import TECHNIQUES  # imports every room: only a refusal needs them
-
-    tests = {t.key for t in TECHNIQUES.values() if refusal.key in t.yields}
+    tests = _tests_of(refusal.key)
     entries: list[Entry] = [*card.records, *card.laws]
     places = {
         _place(origin)
@@ -129,6 +155,7 @@ def _document(trace: Trace) -> Document:
         "property": _record_document(entry) if isinstance(entry, PropertyRecord) else None,
         "law": document_of(entry) if isinstance(entry, Law) else None,
         "refused": [{**document_of(r), "places": _refusal_places(r, card)} for r in trace.refusals],
+        "excluded": [document_of(left_out) for left_out in trace.excluded],
         "code": {"version": provenance.version, "digest": provenance.code},
         "stages": dict(provenance.stages),
         "environment": dict(provenance.environment),
@@ -162,6 +189,13 @@ def _lines(trace: Trace) -> Iterator[str]:
         yield from ("", "Refused")
         for refusal in trace.refusals:
             yield from _refusal_lines(refusal, card)
+    if trace.excluded:
+        yield from ("", "Excluded")
+        for left_out in trace.excluded:
+            yield f"  {left_out.campaign}, {left_out.specimen}: {left_out.reason}"
+            file = "" if left_out.path is None else f"{left_out.path}; "
+            place = f"{file}{left_out.register}, line {left_out.register_line}"
+            yield from aligned([("place", place)], "    ")
     if entry is not None:
         yield from ("", "Specimens")
         for origin in entry.origins:

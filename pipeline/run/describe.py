@@ -10,6 +10,7 @@ from typing import Any, get_args
 from deamat.core.ledger import FileEntry, Status
 from deamat.run.flags import listed
 from deamat.run.measure import Group, RunContext
+from deamat.run.vanished import Published, vanished
 
 FAILURE = 3  # the exit code of a run with an internal error
 
@@ -20,9 +21,17 @@ def describe(
     files: Sequence[FileEntry],
     ignored: Sequence[str],
     release: str,
+    before: Published,
 ) -> dict[str, Any]:
-    """Say what was read, fitted, refused and rejected, and whether all is well."""
+    """Say what was read, fitted, refused and rejected, and whether all is well.
+
+    Parameters
+    ----------
+    before : values of the release before, of which those that are gone are named
+    """
     summaries = [g.summary for g in groups if g.summary]
+    records = [r for s in summaries for r in s.records]
+    refusals = [r for s in summaries for r in s.refusals]
     counts = Counter(f.status for f in files)
     return {
         "exit_code": FAILURE if run.failures else int(any(f.violates for f in files)),
@@ -38,7 +47,7 @@ def describe(
         ],
         "ignored": list(ignored),
         "files": {status: counts[status] for status in get_args(Status)},
-        "values": sum(len(s.records) for s in summaries),
+        "values": len(records),
         "materials": len({g.material for g in groups}),
         "refused": [
             {
@@ -48,11 +57,11 @@ def describe(
                 "specimen": r.specimen,
                 "reason": r.reason,
             }
-            for s in summaries
-            for r in s.refusals
+            for r in refusals
         ],
-        "flags": listed(
-            [r for s in summaries for r in s.records], [law for s in summaries for law in s.laws]
+        "flags": listed(records, [law for s in summaries for law in s.laws]),
+        "vanished": vanished(
+            before, records, refusals, files, [e for s in run.surveys for e in s.excluded]
         ),
         "waiting": _waiting(files),
         "rejected": [
@@ -61,13 +70,17 @@ def describe(
             if f.status == "rejected"
         ],
         "manifest": _manifest(files),
-        "excluded": [{"path": f.path, "reason": f.reason} for f in files if f.status == "excluded"],
-        "internal_errors": [asdict(failure) for failure in run.failures],
-        "warnings": [
-            f"config/exclusions.toml names {e.path}, which is not there"
-            for e in run.config.exclusions.exclude
-            if e.path not in {f.path for f in files}
+        "excluded": [
+            *({"path": f.path, "reason": f.reason} for f in files if f.status == "excluded"),
+            *(
+                {"specimen": e.place, "reason": e.reason}
+                for s in run.surveys
+                for e in s.excluded
+                if e.path is None
+            ),
         ],
+        "internal_errors": [asdict(failure) for failure in run.failures],
+        "warnings": [],
         "redone": [str(r) for r in run.cache.redone],
         "redone_by_stage": Counter(r.stage for r in run.cache.redone),
         "release": release,

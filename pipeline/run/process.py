@@ -24,6 +24,7 @@ from deamat.run.build_cache import BuildCache, key_of
 from deamat.run.compare import compare
 from deamat.run.contents import contents_id
 from deamat.run.describe import describe
+from deamat.run.exclusions import insist_on_targets
 from deamat.run.folders import Folders, Input, Stat, locate, name_as_text
 from deamat.run.measure import Group, Measured, Progress, RunContext, in_order, measure, summarise
 from deamat.run.publish import publish
@@ -32,6 +33,7 @@ from deamat.run.release import Release
 from deamat.run.stages import Stages, find_stages
 from deamat.run.state import State
 from deamat.run.survey import Survey, failed, survey, survey_strays, without_survey
+from deamat.run.vanished import published
 from deamat.run.work import source_of
 from deamat.run.workers import Workers
 from deamat.techniques import TECHNIQUES
@@ -89,6 +91,7 @@ def process(
     hashes = {path: one.sha256 for path, one in inputs.items()}
     config = load_config(folders.config, {t.key: t.config for t in TECHNIQUES.values()})
     surveys, broken, ignored = look_at_raw(folders, inputs, config)
+    insist_on_targets(config.exclusions.exclude, surveys, [failure.subject for failure in broken])
     cache = BuildCache(state)
     stages = find_stages(TECHNIQUES, hashes, state)
     with Workers(workers) as pool:
@@ -104,12 +107,13 @@ def process(
             return {"redone": [str(r) for r in cache.redone]}
         state.commit()  # measurements hold whatever becomes of the release
         release = Release(folders.processed, state.read_note("published"))
+        before = published(release.releases / release.before if release.before else None)
         publish(groups, files, provenance, run, release)
         cache.close()
         name = contents_id(release.building)
         place = release.publish(name)
         state.aside += release.aside
-    document = describe(run, groups, files, ignored, name)
+    document = describe(run, groups, files, ignored, name, before)
     state.remember_inputs(seen, inputs)
     state.note("published", listing(place))
     return document

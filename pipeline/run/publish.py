@@ -195,11 +195,12 @@ def _card(material: str, groups: Sequence[Group], run: RunContext) -> MaterialCa
         laws=tuple(law for s in summaries for law in s.laws),
         refusals=tuple(r for s in summaries for r in s.refusals),
         campaigns=credits_,
+        excluded=tuple(e for s in run.surveys for e in s.excluded if e.material == material),
     )
 
 
 def _card_parts(card: MaterialCard, groups: Sequence[Group]) -> dict[str, str]:
-    about = digest((card.name, card.synthetic, card.campaigns))
+    about = digest((card.name, card.synthetic, card.campaigns, card.excluded))
     return {**{g.subject: g.key for g in groups}, "about": about}
 
 

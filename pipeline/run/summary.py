@@ -32,9 +32,10 @@ def text(document: Mapping[str, Any]) -> str:
     )
     lines += _some("MANIFEST", [_violation(m) for m in document["manifest"]])
     lines += _internal(document)
-    lines += _some("excluded", [f"{e['path']}: {e['reason']}" for e in document["excluded"]])
+    lines += _some("excluded", _excluded(document["excluded"]))
     lines += _some("warning", document["warnings"])
     lines += flag_lines(document["flags"])
+    lines += _some("GONE", [_gone(value) for value in document["vanished"]])
     synthetic = [c["name"] for c in document["campaigns"] if c["synthetic"]]
     if synthetic:
         lines.append(f"SYNTHETIC  {', '.join(synthetic)}: simulated files, not measurements")
@@ -54,6 +55,20 @@ def _some(label: str, said: list[str]) -> list[str]:
     if len(said) > _LONG:
         shown.append(f"{'':<11}... and {len(said) - _LONG} more: deamat audit")
     return shown
+
+
+def _excluded(excluded: Iterable[Mapping[str, Any]]) -> list[str]:
+    return [f"{e.get('path') or e['specimen']}: {e['reason']}" for e in excluded]
+
+
+def _gone(value: Mapping[str, Any]) -> str:
+    """Name a value that the release before had."""
+    under = f" ({value['conditions']})" if value["conditions"] else ""
+    count = f", {value['lost']} of {value['of']}" if value["of"] > 1 else ""
+    return (
+        f"{value['material']} {value['key']}{under} of {value['campaign']}{count}: in the last "
+        f"release, not in this one: {value['why']}"
+    )
 
 
 def _internal(document: Mapping[str, Any]) -> list[str]:

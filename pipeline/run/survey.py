@@ -16,6 +16,7 @@ from deamat.core.errors import RawFileError
 from deamat.core.ledger import Failure, FileEntry, Role
 from deamat.core.manifest import Difference, compare, parse_manifest
 from deamat.core.recording import Specimen
+from deamat.core.records import Excluded
 from deamat.core.register import REGISTER_FILES, SHEET, read_register
 from deamat.core.slug import Spellings
 from deamat.core.technique import AnyTechnique
@@ -34,6 +35,7 @@ class Survey:
     ----------
     specimens : rows whose file is there and not excluded, in register order
     entries : the account so far; a recording stays `used` until reading it says otherwise
+    excluded : rows that `config/exclusions.toml` names, or whose file it names
     stated_units : label to unit, as the campaign's own documents say
     """
 
@@ -41,6 +43,7 @@ class Survey:
     specimens: list[Specimen] = field(default_factory=list)
     entries: dict[str, FileEntry] = field(default_factory=dict)
     stated_units: Mapping[str, str] = field(default_factory=dict)
+    excluded: list[Excluded] = field(default_factory=list)
 
 
 def survey(
@@ -197,11 +200,12 @@ def _manifest(folder: Path, inputs: Mapping[str, Input]) -> tuple[Difference, Ra
 
 def _exclude(result: Survey, config: Config) -> None:
     for exclusion in config.exclusions.exclude:
-        if exclusion.path in result.entries:
-            entry = result.entries[exclusion.path]
-            result.entries[exclusion.path] = replace(
-                entry, status="excluded", reason=exclusion.reason
-            )
+        if exclusion.path is not None and exclusion.path in result.entries:
+            _leave_out(exclusion.path, exclusion.reason, result)
+
+
+def _leave_out(path: str, reason: str, result: Survey) -> None:
+    result.entries[path] = replace(result.entries[path], status="excluded", reason=reason)
 
 
 def _reject(result: Survey, error: RawFileError) -> None:
@@ -251,13 +255,49 @@ def _register(
         return
     owners: dict[str, Specimen] = {}
     slips = list(register.errors)
+    reasons = {exclusion.target: exclusion.reason for exclusion in config.exclusions.exclude}
+    left_out: list[Excluded] = []
     for specimen in register.specimens:
+        why = reasons.get(specimen.place, reasons.get(specimen.file or ""))
+        if why is not None:
+            left_out.append(_excluded(specimen, why))
+            continue
         try:
             if _claim(specimen, result, owners):
                 result.specimens.append(specimen)
         except RawFileError as error:
             slips.append((None, error))
+    _account_for_excluded(left_out, owners, result)
     _reject_rows(path, slips, owners, result)
+
+
+def _excluded(specimen: Specimen, reason: str) -> Excluded:
+    return Excluded(
+        specimen.campaign,
+        specimen.technique,
+        specimen.id,
+        reason,
+        specimen.material,
+        specimen.register,
+        specimen.line,
+        specimen.file,
+    )
+
+
+def _account_for_excluded(
+    left_out: Sequence[Excluded], owners: Mapping[str, Specimen], result: Survey
+) -> None:
+    """Exclude the files of rows that are left out, unless another row has the same one."""
+    result.excluded += left_out
+    claimed = {specimen.file for specimen in owners.values()}
+    for excluded in left_out:
+        file = excluded.path
+        if file is None or file in claimed:
+            continue
+        entry = result.entries.get(file, FileEntry(file, "", 0, "missing", "rejected"))
+        role: Role = "missing" if entry.role == "missing" else "recording"
+        result.entries[file] = replace(entry, role=role)
+        _leave_out(file, excluded.reason, result)
 
 
 def _claim(specimen: Specimen, result: Survey, owners: dict[str, Specimen]) -> bool:

@@ -49,7 +49,7 @@ class Task:
     @property
     def subject(self) -> str:
         """How the account of the run calls it."""
-        return f"{self.specimen.campaign}/{self.specimen.technique}/{self.specimen.id}"
+        return self.specimen.place
 
     @property
     def files(self) -> tuple[str, ...]:

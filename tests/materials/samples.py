@@ -14,7 +14,16 @@ from deamat.core.ledger import FileEntry, Provenance
 from deamat.core.properties import CONDITIONS, PROPERTIES
 from deamat.core.quantity import Contribution, Quantity
 from deamat.core.recording import Specimen
-from deamat.core.records import Condition, Flag, Law, Measurement, Origin, PropertyRecord, Refusal
+from deamat.core.records import (
+    Condition,
+    Excluded,
+    Flag,
+    Law,
+    Measurement,
+    Origin,
+    PropertyRecord,
+    Refusal,
+)
 from deamat.materials.card import Credit, MaterialCard
 
 RAW = "soft-2026/compression"
@@ -271,6 +280,15 @@ cards = st.builds(
         unique_by=lambda law: law.campaign,
     ).map(tuple),
     refusals=st.lists(st.builds(refusal, st.none() | names, names), max_size=3).map(tuple),
+    excluded=st.lists(
+        st.builds(
+            Excluded,
+            *(names, names, names, names, st.just("gel-a"), names, st.integers(1, 10**6)),
+            path=st.none() | names,
+        ),
+        max_size=3,
+        unique_by=lambda e: e.place,
+    ).map(tuple),
     campaigns=st.lists(
         st.builds(Credit, names, words, words, words, words, st.booleans()),
         max_size=2,

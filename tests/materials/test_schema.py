@@ -11,9 +11,9 @@ from hypothesis import given, settings
 
 from deamat.core.properties import CONDITIONS, PROPERTIES
 from deamat.core.quantity import Contribution
-from deamat.core.records import Law, Origin, PropertyRecord, Refusal
-from deamat.core.schema import fields_of
-from deamat.materials.card import SCHEMA, MaterialCard
+from deamat.core.records import Excluded, Law, Origin, PropertyRecord, Refusal
+from deamat.core.schema import entry_of, fields_of
+from deamat.materials.card import SCHEMA, Credit, MaterialCard
 from deamat.materials.json_schema import schema_text
 from tests.materials import samples
 
@@ -43,21 +43,17 @@ def test_the_schema_knows_the_closed_tables() -> None:
 
 
 def test_every_object_of_the_schema_is_closed_and_complete() -> None:
-    closed = [_SCHEMA, *_SCHEMA["$defs"].values()]
-    objects = [d for d in closed if d.get("type") == "object" and "required" in d]
-    assert len(objects) == 7
-    facts = {
-        f.name
-        for cls in (PropertyRecord, Law, Refusal, Origin, Contribution)
-        for f in fields_of(cls)
-        if f.optional
-    }
-    assert "area_ratio_limit" in facts
-    for definition in objects:
+    classes = (MaterialCard, Excluded, PropertyRecord, Law, Refusal, Origin, Contribution, Credit)
+    closed = {entry_of(cls).name: cls for cls in classes}
+    objects = {"card": _SCHEMA, **{n: d for n, d in _SCHEMA["$defs"].items() if "required" in d}}
+    assert objects.keys() == closed.keys()
+    for name, definition in objects.items():
+        facts = {field.name for field in fields_of(closed[name]) if field.optional}
         assert definition["additionalProperties"] is False
         assert definition["required"] == [
             name for name in definition["properties"] if name not in facts
         ]
+    assert "area_ratio_limit" not in objects["property"]["required"]
 
 
 def test_the_fields_of_a_card_stand_in_the_order_of_the_schema() -> None:

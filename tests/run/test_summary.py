@@ -24,6 +24,7 @@ WELL: dict[str, Any] = {
     "excluded": [],
     "warnings": [],
     "flags": [],
+    "vanished": [],
     "cards": "processed/cards",
     "release": "0123abcd",
 }
@@ -62,8 +63,22 @@ def test_whatever_went_wrong_is_said_with_its_place() -> None:
         "rejected": [{"reason": "a.csv, line 3: not a number\na.csv, line 5: not a number"}],
         "manifest": [manifest],
         "internal_errors": [error],
-        "excluded": [{"path": "soft-2026/x.csv", "reason": "the plate slipped"}],
-        "warnings": ["config/exclusions.toml names y.csv, which is not there"],
+        "excluded": [
+            {"path": "soft-2026/x.csv", "reason": "the plate slipped"},
+            {"specimen": "soft-2026/handling/bed-23", "reason": "the heater was off"},
+        ],
+        "warnings": ["a damaged cache was set aside"],
+        "vanished": [
+            {
+                "material": "gel-a",
+                "key": "tensile_modulus",
+                "campaign": "soft-2026",
+                "conditions": "2 months",
+                "lost": 1,
+                "of": 2,
+                "why": "a.csv was removed",
+            }
+        ],
     }
     assert summary.text(document) == (
         """\
@@ -81,7 +96,10 @@ MANIFEST   soft-2026: 4 changed (a.csv, b.csv, c.csv, ...); 1 missing (e.csv); "
 INTERNAL   figure soft-2026/moduli (RuntimeError: burst): internal error, all the rest is """
         """published; traceback in processed/audit/internal_errors.json
 excluded   soft-2026/x.csv: the plate slipped
-warning    config/exclusions.toml names y.csv, which is not there
+excluded   soft-2026/handling/bed-23: the heater was off
+warning    a damaged cache was set aside
+GONE       gel-a tensile_modulus (2 months) of soft-2026, 1 of 2: in the last release, """
+        """not in this one: a.csv was removed
 cards      processed/cards, release 0123abcd"""
     )
     twice = {**document, "internal_errors": [error, error]}
