@@ -61,7 +61,8 @@ def judge(situation: Situation, severity: float, seed: int, runner: Runner) -> J
     off = made.naive / made.truth - 1.0
     flags = frozenset(f.name for r in outcome.records for f in r.flags if f.severity != "info")
     found = [r for r in outcome.records if _meant(r, situation, made)]
-    alarm = any(_names_cause(record, situation.causes) for record in found)
+    telling = [r for r in outcome.records if r.key == situation.key] if made.misstated else found
+    alarm = any(_names_cause(record, situation.causes) for record in telling)
     refused = bool(outcome.rejected) or any(key == situation.key for key, _ in outcome.refused)
     if outcome.failures or outcome.hang:
         verdict: Verdict = "crash"

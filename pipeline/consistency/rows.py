@@ -10,6 +10,7 @@ from deamat.core.flags import Flag
 from deamat.core.recording import Specimen
 from deamat.core.register_bounds import usual
 
+_SLENDER = 1.6  # height over diameter: ISO 7743 goes up to 1.4, beyond it soft cylinders buckle
 _FEWEST = 4  # characters of an id that names one specimen: every register has an `s1`
 
 
@@ -22,7 +23,7 @@ def flags_of_row(
     ----------
     materials_of : see `materials_by_id`
     """
-    flags = [*_odd_numbers(specimen), *dates_of_row(specimen)]
+    flags = [*_odd_numbers(specimen), *_slender(specimen), *dates_of_row(specimen)]
     others = materials_of.get((specimen.campaign, specimen.id), {})
     for material, register in others.items():
         if material != specimen.material and len(specimen.id) >= _FEWEST:
@@ -53,3 +54,16 @@ def _odd_numbers(specimen: Specimen) -> list[Flag]:
                 )
             )
     return flags
+
+
+def _slender(specimen: Specimen) -> list[Flag]:
+    """Flag a cylinder so slender that it may buckle: its sides may be swapped."""
+    sides = [specimen.numbers.get(name) for name in ("height_m", "diameter_m")]
+    if specimen.technique != "compression" or None in sides:
+        return []
+    height, diameter = (side.value for side in sides if side is not None)
+    if height <= _SLENDER * diameter:
+        return []
+    said = f"a height of {1e3 * height:.4g} mm on a diameter of {1e3 * diameter:.4g} mm: such a "
+    said += "cylinder may buckle; are they swapped, or is a decimal point wrong?"
+    return [Flag("register-implausible", said)]

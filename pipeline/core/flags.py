@@ -73,6 +73,7 @@ SEVERITY_OF: dict[str, Severity] = {
     "method-changed": "warning",
     "missing-rows": "warning",
     "mixed-tests": "serious",
+    "near-name": "warning",
     "no-break": "info",
     "no-current-channel": "info",
     "no-ramp": "info",

@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+from deamat.consistency.names import near_names
 from deamat.consistency.rows import materials_by_id
 from deamat.consistency.seen import holds_noise
 from deamat.consistency.together import Member, equal_elsewhere, together
@@ -28,7 +29,9 @@ def compare(measured: Sequence[Measured], run: RunContext) -> list[Measured]:
     ----------
     measured : of one technique
     """
-    materials = materials_by_id(s for survey in run.surveys for s in survey.specimens)
+    specimens = [s for survey in run.surveys for s in survey.specimens]
+    materials = materials_by_id(specimens)
+    names = near_names((s.material for s in specimens), run.config.materials)
     elsewhere = equal_elsewhere([_member(one) for one in measured])
     campaigns: dict[str, list[Measured]] = defaultdict(list)
     for one in measured:
@@ -45,6 +48,8 @@ def compare(measured: Sequence[Measured], run: RunContext) -> list[Measured]:
             flags = [*noticed.flags.get(one.specimen.id, ())]
             if place in elsewhere:
                 flags.append(elsewhere[place])
+            if one.specimen.material in names:
+                flags.append(names[one.specimen.material])
             compared[place] = _with(one, flags, noticed.copies.get(one.specimen.id))
     return [compared[one.specimen.campaign, one.specimen.id] for one in measured]
 

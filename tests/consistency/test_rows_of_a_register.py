@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import pytest
 
+from deamat.consistency.names import near_names
 from deamat.consistency.rows import flags_of_row, materials_by_id
 from deamat.consistency.siblings import siblings_of_rows
 from deamat.core.quantity import Quantity
@@ -101,3 +102,50 @@ def test_an_id_of_two_materials_is_flagged_unless_it_is_a_counter() -> None:
     assert [[f.name for f in flags_of_row(r, known)] for r in rows] == [
         ["id-of-another-material"], ["id-of-another-material"], [], [],
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("rare", "usual"),
+    [
+        ("simulatd", "simulated"),
+        ("simualted", "simulated"),
+        ("simullated", "simulated"),
+        ("sylgard_182-10to1", "sylgard-182-10to1"),
+        ("sylgard-182-10tol", "sylgard-182-10to1"),
+        ("slygard-182-10to1", "sylgard-182-10to1"),
+    ],
+)
+def test_of_two_names_one_letter_apart_the_rarer_is_flagged(rare: str, usual: str) -> None:
+    flags = near_names([usual] * 4 + [rare], ())
+    assert list(flags) == [rare]
+    assert repr(usual) in flags[rare].detail
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        ("sylgard-182-10to1", "sylgard-184-10to1"),
+        ("sylgard-182-10to1", "sylgard-182-20to1"),
+        ("ef30-25t", "ef10-25t"),
+        ("mix-a", "mix-b"),
+        ("cable-insulation-i", "cable-insulation-ii"),
+        ("resin-01", "resin-11"),
+        ("ecoflex-00-10", "ecoflex-00-30"),
+    ],
+)
+def test_names_that_differ_by_a_digit_or_in_a_short_word_are_two(one: str, other: str) -> None:
+    assert near_names([one] * 4 + [other], ()) == {}
+
+
+def test_two_declared_names_are_two_materials() -> None:
+    assert near_names(["simulatd", "simulated"], ("simulatd", "simulated")) == {}
+
+
+@pytest.mark.parametrize(
+    ("height_m", "technique", "flagged"),
+    [(28e-3, "compression", True), (28e-3, "tension", False), (17e-3, "compression", False)],
+)
+def test_a_slender_cylinder_is_flagged(height_m: float, technique: str, flagged: bool) -> None:
+    specimen = row("c-1", technique=technique, height_m=height_m, diameter_m=12e-3)
+    names = [flag.name for flag in flags_of_row(specimen, {})]
+    assert names == (["register-implausible"] if flagged else [])

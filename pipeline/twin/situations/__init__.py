@@ -2,7 +2,16 @@
 
 from __future__ import annotations
 
-from deamat.twin.situations import breakdown, nanoindentation, permittivity, tension, viscosity
+from deamat.twin.situations import (
+    breakdown,
+    compression,
+    conditions,
+    nanoindentation,
+    permittivity,
+    registers,
+    tension,
+    viscosity,
+)
 from deamat.twin.situations.situation import Situation
 
 SITUATIONS: dict[str, Situation] = {
@@ -13,5 +22,8 @@ SITUATIONS: dict[str, Situation] = {
         *breakdown.SITUATIONS,
         *nanoindentation.SITUATIONS,
         *viscosity.SITUATIONS,
+        *compression.SITUATIONS,
+        *conditions.SITUATIONS,
+        *registers.SITUATIONS,
     )
 }
