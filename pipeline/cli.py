@@ -15,12 +15,12 @@ from deamat.commands.options import (
     INTERNAL,
     REJECTED,
     STOPPED,
-    WELL,
     WRONG,
     as_json_option,
     chosen_folders,
     folders_options,
 )
+from deamat.commands.register import register
 from deamat.core.errors import PipelineError, RawFileError
 from deamat.run.boundary import attempt
 
@@ -226,21 +226,6 @@ def design(
 
 
 @cli.command()
-@click.argument("campaign")
-@folders_options
-@click.option("--accept", is_flag=True, help="accept changed and missing files as well")
-def register(
-    campaign: str, raw: Path | None, config: Path | None, processed: Path | None, accept: bool
-) -> None:
-    """Write or extend the manifest of CAMPAIGN: the one command that writes into raw/."""
-    from deamat.run.register import register as register_campaign
-
-    result = register_campaign(chosen_folders(raw, config, processed).raw, campaign, accept)
-    click.echo(result.text)
-    sys.exit(REJECTED if result.pending else WELL)
-
-
-@cli.command()
 @click.option("--seed", type=int, help="same seed, same bytes")
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="folder for --raw")
 @click.option("--situation", metavar="NAME", help="a fault that laboratories have [default: none]")
@@ -274,6 +259,9 @@ def simulate(
         truth = out.with_name(f"{out.name}.{situation}.truth.json")
         written = write_situation(out, found, severity, seed, truth)
     click.echo(f"SYNTHETIC campaign {written}, its truth {truth}")
+
+
+cli.add_command(register)
 
 
 def _pair(text: str) -> tuple[str, str]:

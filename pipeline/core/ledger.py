@@ -24,11 +24,12 @@ class FileEntry:
     status : `used` gave at least one value; `refused` was read and gave none; `rejected` could not
         be read for certain; `excluded` is named in `config/exclusions.toml`; `failed` met an
         internal error of the program, which a `Failure` describes
-    manifest : `ok`, or how it departs from the manifest: `changed`, `missing`, `extra`
+    manifest : `ok`, or how it departs from the manifest: `changed`, `missing`, `extra` (not in it),
+        `extended` (a register with rows appended)
     reason, line, column : why, and where in the file; of several bad rows one reason a line, and
         the place of the first
     placed : the reason itself begins with the path and the place
-    awaits : technique that its register is of, which the program does not have
+    awaits : name of the folder it stands in, where no technique is called so
     """
 
     ENTRY: ClassVar = Entry("file", "files", identity=("path",))
@@ -38,7 +39,7 @@ class FileEntry:
     size: int
     role: Role
     status: Status
-    manifest: Literal["ok", "changed", "missing", "extra"] = "ok"
+    manifest: Literal["ok", "changed", "missing", "extra", "extended"] = "ok"
     reason: str = ""
     line: int | None = None
     column: int | None = None

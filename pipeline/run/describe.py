@@ -10,6 +10,7 @@ from typing import Any, get_args
 from deamat.core.ledger import FileEntry, Status
 from deamat.run.flags import listed
 from deamat.run.measure import Group, RunContext
+from deamat.run.summary import DEPARTURES
 from deamat.run.vanished import Published, vanished
 
 FAILURE = 3  # the exit code of a run with an internal error
@@ -89,9 +90,9 @@ def describe(
 
 
 def _waiting(files: Sequence[FileEntry]) -> list[dict[str, Any]]:
-    """Files of techniques that have no room yet, counted by campaign."""
+    """Files in folders that no technique is called after, counted by campaign."""
     counts = Counter(
-        f"{f.path.partition('/')[0]}: {f.reason}"
+        f"{'/'.join(f.path.split('/')[:2])}: {f.reason}"
         for f in files
         if f.status == "refused" and f.awaits is not None
     )
@@ -106,7 +107,7 @@ def _manifest(files: Sequence[FileEntry]) -> list[dict[str, Any]]:
             continue
         campaign, _, name = f.path.partition("/")
         entry = found.setdefault(
-            campaign, {"campaign": campaign, "changed": [], "missing": [], "extra": []}
+            campaign, {"campaign": campaign, **{kind: [] for kind in DEPARTURES}}
         )
         entry[f.manifest].append(name)
     return [found[campaign] for campaign in sorted(found)]

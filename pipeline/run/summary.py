@@ -8,6 +8,8 @@ from typing import Any
 
 _LONG = 12  # more lines than this of one kind are counted, the rest is in `deamat audit`
 
+DEPARTURES = ("changed", "missing", "extra", "extended")  # from a manifest
+
 
 def text(document: Mapping[str, Any]) -> str:
     """Write the page that a lab engineer reads at the end of a run."""
@@ -26,7 +28,7 @@ def text(document: Mapping[str, Any]) -> str:
         f"{len(document['refused'])} refused"
     )
     lines += _some("refused", _refusals(document["refused"]))
-    lines += _some("no reader", [f"{w['reason']}: {w['files']} files" for w in document["waiting"]])
+    lines += _some("not read", [f"{w['reason']}: {w['files']} files" for w in document["waiting"]])
     lines += _some(
         "REJECTED", [line for r in document["rejected"] for line in r["reason"].split("\n")]
     )
@@ -122,7 +124,7 @@ def _violation(violation: Mapping[str, Any]) -> str:
     said = [
         f"{len(violation[kind])} {kind} ({', '.join(violation[kind][:3])}"
         + (", ...)" if len(violation[kind]) > 3 else ")")
-        for kind in ("changed", "missing", "extra")
+        for kind in DEPARTURES
         if violation[kind]
     ]
     return (

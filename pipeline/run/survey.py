@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import csv
-import difflib
 import io
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Literal
 
@@ -14,7 +14,7 @@ from deamat.core.campaign import CAMPAIGN_FILE, MANIFEST_FILE, Campaign, load_ca
 from deamat.core.config import Config
 from deamat.core.errors import RawFileError
 from deamat.core.ledger import Failure, FileEntry, Role
-from deamat.core.manifest import Difference, compare, parse_manifest
+from deamat.core.manifest import Difference, compare, extends, parse_manifest
 from deamat.core.recording import Specimen
 from deamat.core.records import Excluded
 from deamat.core.register import REGISTER_FILES, SHEET, read_register
@@ -23,6 +23,7 @@ from deamat.core.technique import AnyTechnique
 from deamat.formats.documentation import stated_units
 from deamat.formats.rawfile import read_raw
 from deamat.run.folders import Input
+from deamat.run.other_folders import is_picture, no_technique
 
 _DOCUMENTS = (".md", ".pdf", ".rst")
 
@@ -166,6 +167,9 @@ def _entry(
     if name in difference.changed:
         reason = "file content differs from the manifest"
         return FileEntry(path, sha256, size, role, "used", "changed", reason)
+    if name in difference.extended:
+        reason = "rows were appended since it was registered"
+        return FileEntry(path, sha256, size, role, "used", "extended", reason)
     if name in difference.extra:
         return FileEntry(path, sha256, size, role, "used", "extra", "not in the manifest")
     return FileEntry(path, sha256, size, role, "used")
@@ -179,7 +183,9 @@ def _role(path: str, techniques: Mapping[str, AnyTechnique]) -> Role:
         return "manifest" if parts[1] == MANIFEST_FILE else "document"
     if len(parts) == 3 and parts[2] in REGISTER_FILES:
         return "register"
-    if parts[-1].lower().endswith(_DOCUMENTS) or parts[1] not in techniques:
+    if parts[-1].lower().endswith(_DOCUMENTS):
+        return "document"
+    if parts[1] not in techniques and is_picture(path):
         return "document"
     return "unnamed"
 
@@ -191,11 +197,21 @@ def _manifest(folder: Path, inputs: Mapping[str, Input]) -> tuple[Difference, Ra
         return compare({}, found), None
     try:
         text = _content(path, folder, inputs).decode("utf-8")
-        return compare(parse_manifest(text, path), found), None
+        return compare(parse_manifest(text, path), found, partial(extended, folder)), None
     except UnicodeDecodeError as error:
         return compare({}, found), RawFileError(path, f"not UTF-8: {error}")
     except RawFileError as error:
         return compare({}, found), error
+
+
+def extended(folder: Path, name: str, sha256: str) -> bool:
+    """Say whether a register of a campaign is the one registered with rows appended."""
+    if name.count("/") != 1 or name.partition("/")[2] not in REGISTER_FILES:
+        return False
+    try:
+        return extends(read_raw(folder.parent, f"{folder.name}/{name}"), sha256)
+    except RawFileError:
+        return False
 
 
 def _exclude(result: Survey, config: Config) -> None:
@@ -224,9 +240,7 @@ def _register(
 ) -> None:
     name = path.split("/")[1]
     if name not in techniques:
-        near = difflib.get_close_matches(name, techniques, n=1)
-        hint = f"; did you mean {near[0]!r}?" if near else ""
-        reason = f"no technique is called {name!r} yet{hint}"
+        reason = no_technique(name, techniques)
         for file in [path, *_files_named(data, path)]:
             if file in result.entries and result.entries[file].status != "excluded":
                 role: Role = "register" if file == path else "recording"
@@ -366,11 +380,18 @@ def _files_named(data: bytes, path: str) -> list[str]:
 
 
 def _unnamed(result: Survey, folder: Path, techniques: Mapping[str, AnyTechnique]) -> None:
-    """A data file that no register names is rejected: nobody can say what it belongs to."""
+    """A data file that no register names is rejected: nobody can say what it belongs to.
+
+    In a folder that no technique is called after it waits for the folder's right name.
+    """
     for path, entry in result.entries.items():
         if entry.role != "unnamed" or entry.status != "used":
             continue
         technique = path.split("/")[1]
+        if technique not in techniques:
+            reason = no_technique(technique, techniques)
+            result.entries[path] = replace(entry, status="refused", reason=reason, awaits=technique)
+            continue
         register = f"{folder.name}/{technique}/{techniques[technique].register.file}"
         reason = (
             f"{register} does not name it; add a row or an exclusion"

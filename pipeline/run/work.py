@@ -115,7 +115,7 @@ def _read(task: Task, path: str) -> Recording:
         raise RawFileError(
             path,
             "file content differs from the manifest",
-            hint=f"restore it, or look at `deamat register {campaign}` and accept the change",
+            hint=f"restore it, or look at `deamat register {campaign}` and accept this change",
         )
     return recording
 

@@ -284,7 +284,7 @@ def test_a_whole_run_names_every_rejected_file_and_uses_none(tmp_path: Path) -> 
         (place / f"x{i}").write_bytes(trap.data)
         rows.append(f"x{i},bad,x{i},2022-03-01T20:00:00")
     (place / "specimens.csv").write_text("\n".join([*rows, ""]))
-    register(folders.raw, "traps", accept=True)
+    register(folders.raw, "traps", accept_all=True)
     document = run(folders)
     assert document["exit_code"] == 1
     found = {r["path"].rpartition("/")[2]: r["reason"] for r in document["rejected"]}

@@ -57,7 +57,7 @@ def small_campaign(folder: Path, materials: Sequence[str] = MATERIALS) -> None:
         mine = [r for r in rows if r["material"] == material and r["age"] == "after cure"]
         kept += mine[:3]
     write_campaign(kept, folder, "compression/specimens.csv")
-    register(folder.parent, folder.name, accept=True)
+    register(folder.parent, folder.name, accept_all=True)
 
 
 def all_of_one_material(folder: Path, material: str, most: int | None = None) -> None:
@@ -70,7 +70,7 @@ def all_of_one_material(folder: Path, material: str, most: int | None = None) ->
         mine = [row for row in twin_rows(name) if row["material"] == material]
         if mine:
             write_campaign(mine[:most] if "file" in mine[0] else mine, folder, name)
-    register(folder.parent, folder.name, accept=True)
+    register(folder.parent, folder.name, accept_all=True)
 
 
 def twin_rows(name: str) -> list[dict[str, str]]:

@@ -50,11 +50,11 @@ def test_a_changed_file_is_rejected_until_it_is_accepted(folders: Folders) -> No
     assert audit(folders)["exit_code"] == 1
     assert _fate(folders, path)["status"] == "rejected"
     assert "file content differs from the manifest" in str(_fate(folders, path)["reason"])
-    shown = register(folders.raw, "demo", accept=False)
+    shown = register(folders.raw, "demo")
     assert shown.pending
     assert f"changed  {path.relative_to(folders.raw / 'demo').as_posix()}" in shown.text
     assert audit(folders)["exit_code"] == 1
-    register(folders.raw, "demo", accept=True)
+    register(folders.raw, "demo", accept_all=True)
     assert audit(folders)["exit_code"] == 0
 
 
@@ -101,7 +101,7 @@ def test_an_unregistered_file_is_used_flagged_and_reported(folders: Folders) -> 
     assert len(document["manifest"][0]["extra"]) >= 1
     text = (folders.processed / "cards" / "sylgard-182-10to1.json").read_text()
     assert "unregistered: " in text
-    assert register(folders.raw, "demo", accept=False).pending is False
+    assert register(folders.raw, "demo").pending is False
     assert run(folders)["exit_code"] == 0
 
 
@@ -123,7 +123,7 @@ def test_folders_without_a_campaign_file_are_named_and_ignored(folders: Folders)
 
 def test_registering_no_campaign_is_wrong_usage(folders: Folders) -> None:
     with pytest.raises(ConfigError, match=r"nowhere is no campaign: it has no campaign\.toml"):
-        register(folders.raw, "nowhere", accept=False)
+        register(folders.raw, "nowhere")
 
 
 def test_a_file_that_the_account_lacks_is_unaccounted(
@@ -205,23 +205,78 @@ ignored: loose/, old/"""
 
 def test_registering_says_what_it_wrote_and_what_waits(folders: Folders) -> None:
     place = folders.raw / "demo"
-    assert register(folders.raw, "demo", accept=False) == Registration(
+    assert register(folders.raw, "demo") == Registration(
         "demo: 8 files, all as in the manifest", pending=False
     )
     (place / "notes.md").write_text("new\n")
-    shown = register(folders.raw, "demo", accept=False)
+    shown = register(folders.raw, "demo")
     assert shown == Registration("new      notes.md\ndemo: 9 files registered", pending=False)
     (place / "notes.md").unlink()
     (place / "README.md").write_text("new\n")
-    shown = register(folders.raw, "demo", accept=False)
+    shown = register(folders.raw, "demo")
     assert shown.pending
     assert shown.text.splitlines()[0] == "new      README.md"
     assert shown.text.splitlines()[1].startswith("missing  notes.md (was 7aa7a5359173)")
-    assert shown.text.endswith(
-        "nothing written; if these changes are right, say `deamat register demo --accept`"
-    )
-    assert "README.md" not in (place / "MANIFEST.sha256").read_text()
-    shown = register(folders.raw, "demo", accept=True)
+    assert shown.text.splitlines()[2:] == [
+        "demo: 1 changed or missing file is not accepted; if a change is right, say "
+        "`deamat register demo --accept notes.md`",
+        "demo: 10 files registered",
+    ]
+    assert "README.md" in (place / "MANIFEST.sha256").read_text()
+    assert "notes.md" in (place / "MANIFEST.sha256").read_text()
+    shown = register(folders.raw, "demo", accept_all=True)
     assert shown.text.endswith("demo: 9 files registered")
     assert not shown.pending
-    assert "README.md" in (place / "MANIFEST.sha256").read_text()
+    assert "notes.md" not in (place / "MANIFEST.sha256").read_text()
+
+
+def test_one_change_is_accepted_and_the_others_wait(folders: Folders) -> None:
+    first, second, third = curves(folders)[:3]
+    for path in (first, second):
+        path.write_bytes(path.read_bytes().replace(b"0.2", b"0.3", 1))
+    third.unlink()
+    names = [p.relative_to(folders.raw / "demo").as_posix() for p in (first, second, third)]
+    before = (folders.raw / "demo" / "MANIFEST.sha256").read_text()
+    shown = register(folders.raw, "demo", [names[0]])
+    assert shown.pending
+    assert "2 changed or missing files are not accepted" in shown.text
+    after = (folders.raw / "demo" / "MANIFEST.sha256").read_text()
+    assert [line[66:] for line in after.splitlines() if line not in before.splitlines()] == [
+        names[0]
+    ]
+    assert register(folders.raw, "demo", [f"demo/{name}" for name in names[1:]]).pending is False
+    assert audit(folders)["exit_code"] == 1  # the missing file is still in the register
+    with pytest.raises(ConfigError, match=r"is no changed or missing file of demo$"):
+        register(folders.raw, "demo", [names[0]])
+
+
+def test_an_appended_row_needs_no_acceptance(folders: Folders) -> None:
+    table = folders.raw / "demo" / "compression" / "specimens.csv"
+    old = table.read_bytes()
+    row = old.splitlines()[-1].split(b",")
+    new = curves(folders)[0].with_name("new.txt")
+    new.write_bytes(curves(folders)[-1].read_bytes().replace(b"0.01", b"0.02", 1))
+    header = old.splitlines()[0].split(b",")
+    row[header.index(b"specimen")] = b"new-1"
+    row[header.index(b"file")] = new.relative_to(table.parent).as_posix().encode()
+    table.write_bytes(old + b",".join(row) + b"\n")
+    document = run(folders)
+    assert document["manifest"] == [{
+        "campaign": "demo", "changed": [], "missing": [],
+        "extra": [new.relative_to(folders.raw / "demo").as_posix()],
+        "extended": ["compression/specimens.csv"],
+    }]  # fmt: skip
+    shown = register(folders.raw, "demo")
+    assert not shown.pending
+    assert "extended compression/specimens.csv" in shown.text
+    assert run(folders)["manifest"] == []
+    table.write_bytes(old.replace(b"28", b"29", 1))
+    assert register(folders.raw, "demo").pending
+
+
+def test_the_registered_hash_still_holds_what_was_not_accepted(folders: Folders) -> None:
+    path = curves(folders)[0]
+    path.write_bytes(path.read_bytes().replace(b"0.2", b"0.3", 1))
+    register(folders.raw, "demo")
+    assert audit(folders)["exit_code"] == 1
+    assert _fate(folders, path)["manifest"] == "changed"

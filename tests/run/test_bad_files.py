@@ -68,7 +68,7 @@ def test_rejected_by_place_and_reason(folders: Folders, name: str) -> None:
     change, place = REJECTED[name]
     path = curves(folders)[0]
     path.write_bytes(change(path.read_bytes()))
-    register(folders.raw, "demo", accept=True)
+    register(folders.raw, "demo", accept_all=True)
     document = run(folders)
     assert document["exit_code"] == 1
     (rejected,) = document["rejected"]
@@ -93,5 +93,5 @@ def test_read_as_if_nothing_had_happened(folders: Folders, name: str) -> None:
     before = value()
     path = curves(folders)[0]
     path.write_bytes(READ[name](path.read_bytes()))
-    register(folders.raw, "demo", accept=True)
+    register(folders.raw, "demo", accept_all=True)
     assert value() == before

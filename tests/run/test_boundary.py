@@ -214,8 +214,8 @@ def test_no_modulus_and_no_reading_means_no_figure(tmp_path: Path) -> None:
     write_campaign(twin_rows("viscosity/specimens.csv")[:1], still, "viscosity/specimens.csv")
     for path in still.rglob("*.log"):
         path.write_bytes(re.sub(rb"RPM +[0-9]+ +[0-9.]+", b"RPM  0  0.0", path.read_bytes()))
-    register(folders.raw, "bad", accept=True)
-    register(folders.raw, "still", accept=True)
+    register(folders.raw, "bad", accept_all=True)
+    register(folders.raw, "still", accept_all=True)
     document = run(folders)
     assert (document["exit_code"], document["internal_errors"]) == (1, [])
     assert {r["campaign"] for r in document["refused"]} == {"still"}

@@ -63,7 +63,7 @@ def test_the_card_the_database_and_the_trace_say_what_was_left_out(
 def test_a_row_without_a_file_can_be_left_out(folders: Folders) -> None:
     rows = [r for r in twin_rows("handling/observations.csv") if r["material"] == MATERIALS[0]]
     write_campaign(rows, folders.raw / "beds", "handling/observations.csv")
-    register(folders.raw, "beds", accept=True)
+    register(folders.raw, "beds", accept_all=True)
     names = ("material", "batch", "bed_temperature_C", "time_h", "line")
     row = f"beds/handling/{' '.join(rows[0][name] for name in names)}"
     document = exclude(folders, "the heater was off", specimen=row)
@@ -81,7 +81,7 @@ def test_another_row_keeps_the_file_that_both_name(folders: Folders) -> None:
     lines = register_file.read_text().splitlines(keepends=True)
     lines.insert(2, "twin-row," + lines[1].split(",", 1)[1])
     register_file.write_text("".join(lines))
-    register(folders.raw, "demo", accept=True)
+    register(folders.raw, "demo", accept_all=True)
     document = exclude(folders, specimen=f"demo/compression/{first(folders)[0]}")
     assert (document["exit_code"], document["rejected"]) == (0, [])
     with open_database(folders.processed) as database:
@@ -93,7 +93,7 @@ def test_another_row_keeps_the_file_that_both_name(folders: Folders) -> None:
 def test_a_file_that_is_not_there_can_be_left_out(folders: Folders) -> None:
     specimen, file = first(folders)
     file.unlink()
-    register(folders.raw, "demo", accept=True)
+    register(folders.raw, "demo", accept_all=True)
     assert run(folders)["exit_code"] == 1
     document = exclude(folders, "lost with the disk", specimen=f"demo/compression/{specimen}")
     assert (document["exit_code"], document["rejected"]) == (0, [])
@@ -124,7 +124,7 @@ def test_rows_that_cannot_be_read_are_not_missed(folders: Folders) -> None:
 def test_every_file_can_be_left_out_by_its_path(folders: Folders) -> None:
     spare = curves(folders)[0].with_name("spare.txt")
     spare.write_bytes(curves(folders)[0].read_bytes() + b"\r\n")
-    register(folders.raw, "demo", accept=True)
+    register(folders.raw, "demo", accept_all=True)
     document = exclude(folders, path=spare.relative_to(folders.raw).as_posix())
     assert document["exit_code"] == 0
     with open_database(folders.processed) as database:

@@ -75,7 +75,7 @@ def _add_rows(folders: Folders) -> None:
         writer = csv.DictWriter(file, list(like))
         writer.writeheader()
         writer.writerows(rows)
-    register(folders.raw, "demo", accept=True)
+    register(folders.raw, "demo", accept_all=True)
 
 
 @pytest.mark.parametrize("material", MATERIAL_NAMES)
@@ -140,7 +140,7 @@ def test_no_manifest_is_written_outside_raw(tmp_path: Path, campaign: str) -> No
         shutil.copy(raw / "demo" / "campaign.toml", folder)
     before = set(tmp_path.rglob("*"))
     with pytest.raises(ConfigError, match="is not the name of a folder in"):
-        register(raw, campaign, accept=True)
+        register(raw, campaign, accept_all=True)
     assert set(tmp_path.rglob("*")) == before
 
 

@@ -71,7 +71,7 @@ def test_what_another_technique_needs_is_foretold_with_it(
         assert technique == "viscosity" or age in lines[row]
         del lines[row]
         path.write_text("".join(lines))
-    register(folders.raw, "other", accept=True)
+    register(folders.raw, "other", accept_all=True)
     why = dict(line.split(": ", 1) for line in explain(folders)["now"])
     assert why["summary other/handling/sylgard-184-10to1[temperature_K=295.15]"] == "laws is redone"
     done = _redone(folders)
@@ -84,7 +84,7 @@ def test_a_changed_file(folders: Folders) -> None:
     run(folders)
     path = curves(folders)[-1]
     _touch_a_number(path)
-    register(folders.raw, "demo", accept=True)
+    register(folders.raw, "demo", accept_all=True)
     done = _redone(folders)
     assert _stages(done) == {"measurement": 1, "summary": 1, "card": 1, "figure": 2}
     assert {d.partition(" ")[0] for d in done} >= _OUTPUTS
@@ -97,7 +97,7 @@ def test_a_removed_row_and_file(folders: Folders) -> None:
     table = folders.raw / "demo" / "compression" / "specimens.csv"
     table.write_text("".join(table.read_text().splitlines(keepends=True)[:-1]))
     curves(folders)[-1].unlink()
-    register(folders.raw, "demo", accept=True)
+    register(folders.raw, "demo", accept_all=True)
     done = _redone(folders)
     assert _stages(done) == {"measurement": 1, "summary": 1, "card": 1, "figure": 2}
 
@@ -108,7 +108,7 @@ def test_a_changed_register_row(folders: Folders) -> None:
     lines = table.read_text().splitlines(keepends=True)
     lines[1] = lines[1].replace(",12,", ",12.5,", 1)
     table.write_text("".join(lines))
-    register(folders.raw, "demo", accept=True)
+    register(folders.raw, "demo", accept_all=True)
     assert _stages(_redone(folders))["measurement"] == 1
 
 
@@ -144,7 +144,7 @@ def test_what_a_campaign_says_of_all_its_files(
     run(folders)
     with (folders.raw / "demo" / file).open("a") as out:
         out.write(f"\n{line}\n")
-    register(folders.raw, "demo", accept=True)
+    register(folders.raw, "demo", accept_all=True)
     why = [said for said in explain(folders)["now"] if said.startswith("measurement")]
     assert [said.partition(": ")[2] for said in why] == again * ["campaign changed"]
     assert _stages(_redone(folders))["measurement"] == again

@@ -80,7 +80,7 @@ def test_each_is_named_once_wherever_it_is_and_the_rest_is_read(folders: Folders
     assert document["manifest"] == document["internal_errors"] == document["ignored"] == []
     told = audit(folders)
     assert (told["unaccounted"], told["twice"]) == ([], [])
-    said = register(folders.raw, "demo", accept=False).text
+    said = register(folders.raw, "demo").text
     ignored = {f"ignored  {r.removeprefix('demo/')}" for p, r in expected.items() if "/" in p}
     assert all(line in said for line in ignored)
     assert said.count("ignored  ") == len(ignored)
@@ -113,7 +113,7 @@ def test_a_file_that_makes_the_campaign(folders: Folders, name: str) -> None:
     assert (document["values"] == 4) == (name == "MANIFEST.sha256")
     if name == "MANIFEST.sha256":
         with pytest.raises(RawFileError, match="a named pipe"):
-            register(folders.raw, "demo", accept=True)
+            register(folders.raw, "demo", accept_all=True)
 
 
 def test_links_to_files_and_folders_are_followed(folders: Folders, tmp_path: Path) -> None:
@@ -124,9 +124,7 @@ def test_links_to_files_and_folders_are_followed(folders: Folders, tmp_path: Pat
     path.symlink_to(tmp_path / "curve")
     document = run(folders)
     assert (document["exit_code"], document["values"]) == (0, 4)
-    assert (
-        register(folders.raw, "demo", accept=False).text == "demo: 8 files, all as in the manifest"
-    )
+    assert register(folders.raw, "demo").text == "demo: 8 files, all as in the manifest"
 
 
 @pytest.mark.parametrize(

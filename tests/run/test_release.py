@@ -41,10 +41,10 @@ def test_going_back_gives_the_first_release_again(folders: Folders) -> None:
     path = curves(folders)[0]
     kept = path.read_bytes()
     path.write_bytes(kept.replace(b"0.2", b"0.3", 1))
-    register(folders.raw, "demo", accept=True)
+    register(folders.raw, "demo", accept_all=True)
     assert run(folders)["release"] != first
     path.write_bytes(kept)
-    register(folders.raw, "demo", accept=True)
+    register(folders.raw, "demo", accept_all=True)
     assert run(folders)["release"] == first
     assert _bytes(folders.processed) == before
 
@@ -56,7 +56,7 @@ def test_a_run_that_dies_leaves_the_last_release_readable(
     before = _bytes(folders.processed)
     path = curves(folders)[0]
     path.write_bytes(path.read_bytes().replace(b"0.2", b"0.3", 1))
-    register(folders.raw, "demo", accept=True)
+    register(folders.raw, "demo", accept_all=True)
 
     def die(*_: object) -> None:
         raise KeyboardInterrupt

@@ -52,6 +52,7 @@ def test_whatever_went_wrong_is_said_with_its_place() -> None:
         "changed": ["a.csv", "b.csv", "c.csv", "d.csv"],
         "missing": ["e.csv"],
         "extra": [],
+        "extended": ["tension/specimens.csv"],
     }
     error = {"stage": "figure", "subject": "soft-2026/moduli", "error": "RuntimeError: burst"}
     document = {
@@ -59,7 +60,7 @@ def test_whatever_went_wrong_is_said_with_its_place() -> None:
         "campaigns": WELL["campaigns"][:1],
         "ignored": ["loose/", "old/"],
         "refused": [refusal("A1"), refusal("A2"), refusal(None, "tensile_strength")],
-        "waiting": [{"reason": "soft-2026: no technique is called 'dma' yet", "files": 4}],
+        "waiting": [{"reason": "soft-2026/dma: no technique is called 'dma'", "files": 4}],
         "rejected": [{"reason": "a.csv, line 3: not a number\na.csv, line 5: not a number"}],
         "manifest": [manifest],
         "internal_errors": [error],
@@ -88,11 +89,11 @@ ignored loose/, old/ (no campaign.toml)
 values     9 of 2 materials, 3 refused
 refused    gel-a tensile_modulus (A1 and 1 more): 2 samples, 10 are needed
 refused    gel-a tensile_strength (soft-2026): 2 samples, 10 are needed
-no reader  soft-2026: no technique is called 'dma' yet: 4 files
+not read   soft-2026/dma: no technique is called 'dma': 4 files
 REJECTED   a.csv, line 3: not a number
 REJECTED   a.csv, line 5: not a number
 MANIFEST   soft-2026: 4 changed (a.csv, b.csv, c.csv, ...); 1 missing (e.csv); """
-        """look at `deamat register soft-2026`
+        """1 extended (tension/specimens.csv); look at `deamat register soft-2026`
 INTERNAL   figure soft-2026/moduli (RuntimeError: burst): internal error, all the rest is """
         """published; traceback in processed/audit/internal_errors.json
 excluded   soft-2026/x.csv: the plate slipped

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from deamat.techniques import TECHNIQUES
 from tests.run.test_observations import look
 
 HEADER = "specimen,material,file,diameter_mm,height_mm\n"
@@ -73,13 +74,51 @@ def test_a_manifest_that_cannot_be_read_is_rejected_alone(
     assert seen.entries["demo/compression/a.csv"].manifest == "extra"
 
 
+def test_pictures_and_texts_in_other_folders_are_documents(tmp_path: Path) -> None:
+    names = ["photos/a.JPG", "photos/plan.docx", "instron/read.me.pdf", "instron/notes.md"]
+    seen = look(tmp_path / "demo", dict.fromkeys(names, b"1"))
+    for name in names:
+        entry = seen.entries[f"demo/{name}"]
+        assert (entry.role, entry.status) == ("document", "used")
+
+
+@pytest.mark.parametrize(
+    ("name", "then", "manifest"),
+    [
+        ("compression/specimens.csv", GOOD + b"s9,m,,28,8\n", "extended"),
+        ("compression/specimens.csv", GOOD.replace(b"28", b"29", 1), "changed"),
+        ("compression/a.csv", b"12", "changed"),
+        ("compression/a.csv", b"1\n2\n", "changed"),
+    ],
+)
+def test_rows_appended_to_a_register_extend_it(
+    name: str, then: bytes, manifest: str, tmp_path: Path
+) -> None:
+    before = {**FILES, "compression/specimens.csv": GOOD}
+    sums = "".join(f"{hashlib.sha256(d).hexdigest()}  {n}\n" for n, d in before.items())
+    contents = {**before, name: then, "MANIFEST.sha256": sums.encode()}
+    seen = look(tmp_path / "demo", contents)
+    assert seen.entries[f"demo/{name}"].manifest == manifest
+    assert {p for p, e in seen.entries.items() if e.manifest != "ok"} == {
+        "demo/campaign.toml",  # not in the manifest
+        f"demo/{name}",
+    }
+
+
 def test_without_a_manifest_every_file_is_unregistered(tmp_path: Path) -> None:
     seen = look(tmp_path / "demo", {**FILES, "compression/specimens.csv": GOOD})
     assert {e.manifest for e in seen.entries.values()} == {"extra"}
 
 
 @pytest.mark.parametrize(
-    ("technique", "hint"), [("compresion", "; did you mean 'compression'?"), ("dma", "")]
+    ("technique", "hint"),
+    [
+        ("compresion", "did you mean 'compression'?"),
+        ("Compression", "did you mean 'compression'?"),
+        ("instron", "did you mean 'compression' or 'tension'?"),
+        ("lcr 2022", "did you mean 'permittivity'?"),
+        ("dma", f"a folder is called after its technique: {', '.join(sorted(TECHNIQUES))}"),
+    ],
 )
 def test_files_of_an_unknown_technique_wait_for_it(
     technique: str, hint: str, tmp_path: Path
@@ -89,9 +128,11 @@ def test_files_of_an_unknown_technique_wait_for_it(
     for name, role in (("specimens.csv", "register"), ("a.csv", "recording")):
         entry = seen.entries[f"demo/{technique}/{name}"]
         assert (entry.role, entry.status, entry.awaits) == (role, "refused", technique)
-        assert entry.reason == f"no technique is called {technique!r} yet{hint}"
+        assert entry.reason == f"no technique is called {technique!r}; {hint}"
     assert f"demo/{technique}/b.csv" not in seen.entries
-    assert seen.entries[f"demo/{technique}/c.csv"].role == "document"
+    unread = seen.entries[f"demo/{technique}/c.csv"]
+    assert (unread.role, unread.status, unread.awaits) == ("unnamed", "refused", technique)
+    assert unread.reason == f"no technique is called {technique!r}; {hint}"
     assert seen.specimens == []
 
 
@@ -107,8 +148,9 @@ def test_whatever_a_register_names_waits_with_it(
     register: bytes, named: list[str], tmp_path: Path
 ) -> None:
     seen = look(tmp_path / "demo", {"dma/specimens.csv": register, "dma/a.csv": b"1"})
-    waiting = [path for path, e in seen.entries.items() if e.awaits == "dma"]
-    assert sorted(waiting) == sorted(f"demo/dma/{name}" for name in [*named, "specimens.csv"])
+    waiting = {path: e.role for path, e in seen.entries.items() if e.awaits == "dma"}
+    role = "recording" if named else "unnamed"
+    assert waiting == {"demo/dma/specimens.csv": "register", "demo/dma/a.csv": role}
 
 
 def test_a_register_that_cannot_be_read_rejects_the_files_that_it_names(tmp_path: Path) -> None:

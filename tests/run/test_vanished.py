@@ -36,7 +36,7 @@ def test_a_removed_file_is_named_once(folders: Folders) -> None:
     for path in gone:
         path.unlink()
     rows_of(folders, MATERIALS[1])
-    register(folders.raw, "demo", accept=True)
+    register(folders.raw, "demo", accept_all=True)
     document = run(folders)
     keys = ["compressive_modulus", "compressive_modulus_toe_compensated"]
     assert sorted(told(document)) == [(MATERIALS[0], key) for key in keys]
@@ -77,10 +77,10 @@ def test_one_value_of_two_conditions_is_told_by_them(folders: Folders) -> None:
     lines = path.read_text().splitlines(keepends=True)
     aged = [lines[0], *lines[1:3], *(x.replace("after cure", "2 months") for x in lines[3:])]
     path.write_text("".join(aged))
-    register(folders.raw, "demo", accept=True)
+    register(folders.raw, "demo", accept_all=True)
     run(folders)
     path.write_text("".join(lines))
-    register(folders.raw, "demo", accept=True)
+    register(folders.raw, "demo", accept_all=True)
     gone = run(folders)["vanished"]
     assert {value["conditions"].split(",")[0] for value in gone} == {"2 months"}
     assert {value["why"] for value in gone} == {

@@ -26,7 +26,7 @@ def _campaign(folders: Folders, technique: str, change: Callable[[bytes], bytes]
     write_campaign(rows, folder, f"{technique}/specimens.csv")
     path = folder / technique / rows[0]["file"]
     path.write_bytes(change(path.read_bytes()))
-    register(folders.raw, "wild", accept=True)
+    register(folders.raw, "wild", accept_all=True)
     return path
 
 
@@ -93,7 +93,7 @@ def test_a_wild_number_in_a_register(folders: Folders, value: str) -> None:
         writer = csv.DictWriter(file, list(rows[0]))
         writer.writeheader()
         writer.writerows(rows)
-    register(folders.raw, "demo", accept=True)
+    register(folders.raw, "demo", accept_all=True)
     document = run(folders)
     assert (document["exit_code"], document["internal_errors"]) == (1, [])
     (rejected,) = document["rejected"]
