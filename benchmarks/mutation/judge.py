@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import queue
 import subprocess
 import sys
@@ -56,12 +57,12 @@ def verdicts(
                     mutant, source, tests = waiting.get_nowait()
                 except queue.Empty:
                     break
+                limit = LEAST_CPU_S + SLOWER * math.fsum(hits.seconds[name] for name in tests)
                 if tests and not checked:
                     checked = True
-                    killer = _ask(worker, copy, source, mutant.file, tests, LEAST_CPU_S)
+                    killer = _ask(worker, copy, source, mutant.file, tests, limit)
                     if killer is not None:
                         raise RuntimeError(f"without a mutant the tests fail too: {killer}")
-                limit = LEAST_CPU_S + SLOWER * sum(hits.seconds[name] for name in tests)
                 killer = _ask(worker, copy, mutant.applied_to(source), mutant.file, tests, limit)
                 found[mutant.name] = Verdict(mutant, killer, len(tests))
                 state = _state(project, mutant, killer, tests)

@@ -10,7 +10,7 @@ import pytest
 from deamat.core.errors import ConfigError
 from deamat.run.build_cache import STALE, BuildCache, digest, key_of
 from deamat.run.folders import Input, Stat
-from deamat.run.state import State
+from deamat.run.state import DamagedState, State
 
 
 def test_what_is_noted_and_made_comes_back_in_the_next_run(tmp_path: Path) -> None:
@@ -39,6 +39,19 @@ def test_what_a_run_noted_that_did_not_end_is_forgotten(tmp_path: Path) -> None:
         interrupted()
     with State(tmp_path) as state:
         assert state.read_note("document") is None
+
+
+def test_what_cannot_be_kept_is_an_error_and_no_silence(tmp_path: Path) -> None:
+    with State(tmp_path) as state:
+        state.db.execute("PRAGMA busy_timeout = 0")
+        reader = sqlite3.connect(tmp_path / "state.sqlite")
+        reader.execute("BEGIN")
+        reader.execute("SELECT * FROM note").fetchall()
+        state.note("document", "never kept")
+        with pytest.raises(DamagedState, match="database is locked"):
+            state.commit()
+        reader.close()
+        state.db.rollback()
 
 
 def test_one_run_at_a_time_and_the_next_one_after_it(tmp_path: Path) -> None:

@@ -142,6 +142,7 @@ def test_files_of_an_unknown_technique_wait_for_it(
         (b"\xef\xbb\xbfspecimen, file \na, a.csv \nb,\nc\n", ["a.csv"]),
         (b"specimen\na\n", []),
         (b"", []),
+        (b"file\na.csv\n" + b"x" * 140_000 + b"\n", []),  # more than a field may hold
     ],
 )
 def test_whatever_a_register_names_waits_with_it(
