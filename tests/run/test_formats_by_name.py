@@ -41,4 +41,4 @@ def _name_formats(folders: Folders, formats: list[str]) -> None:
         writer = csv.DictWriter(file, list(rows[0]))
         writer.writeheader()
         writer.writerows(rows)
-    register(folders.raw, "demo", accept=True)
+    register(folders.raw, "demo", accept_all=True)
