@@ -11,6 +11,7 @@ from pathlib import Path
 import click
 
 from deamat import __version__
+from deamat.commands.check import check
 from deamat.commands.options import (
     INTERNAL,
     REJECTED,
@@ -38,6 +39,9 @@ Exit codes:
 @click.version_option(__version__)
 def cli() -> None:
     """From raw laboratory files of soft dielectric elastomers to material cards people trust."""
+
+
+cli.add_command(check)
 
 
 @cli.command("all")

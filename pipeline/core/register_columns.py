@@ -68,6 +68,11 @@ def si_name(stem: str, si_unit: str) -> str:
     return stem if si_unit == "1" else f"{stem}_{si_unit.replace('/', '_per_').replace('.', '')}"
 
 
+def usual_column(name: str) -> str:
+    """Return how a register usually heads a number: `diameter_mm` for `diameter_m`."""
+    return _USUAL_OF.get(name.rpartition("_")[0], name)
+
+
 def _stem_units(usual: str) -> tuple[str, tuple[str, ...]]:
     stem, unit = split_unit(usual)
     return stem, (si_factor(unit or "1")[0], *_ALSO.get(stem, ()))

@@ -32,6 +32,11 @@ _BINARY = {
 _DELIMITERS = {"tab": "\t", "semicolon": ";", "comma": ","}
 
 
+def is_binary(data: bytes) -> bool:
+    """Say whether bytes start as a file that is no text."""
+    return data[:4] in _BINARY
+
+
 def detect(file: RawFile) -> Format:
     """Return the one format that recognises the head of a file, or that of any plain table.
 
@@ -67,9 +72,14 @@ def detect(file: RawFile) -> Format:
             file.path,
             f"no format recognises this file: {error.reason} ({_found(file)})",
             line=error.line or 1,
-            value=error.value or file.head[(error.line or 1) - 1 :][:1][0][:60],
+            value=error.value or _line(file, error.line or 1)[:60],
             hint=error.hint or _HINT,
         ) from error
+
+
+def _line(file: RawFile, number: int) -> str:
+    """One line of a file, counted from 1; it may be far below the head."""
+    return file.body[file.offset(number - 1) :].split(b"\n", 1)[0].decode("utf-8", "replace")
 
 
 def _is_for(form: Format, file: RawFile) -> bool:
