@@ -19,6 +19,7 @@ LIMIT_Pas = 3.5  # whose time is asked for: two of the liquids reach it between 
 NOT_ON_CARDS = {
     "breakdown_field": "of one specimen; the card of a material holds the Weibull distribution",
     "mass_density": "no technique measures it",
+    "viscosity_against_temperature": "the liquids of the twin are measured at one temperature",
     "tensile_modulus_toe_compensated": "only of strips that hang loose, and none of the twin does",
 }
 

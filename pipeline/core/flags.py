@@ -29,7 +29,6 @@ SEVERITY_OF: dict[str, Severity] = {
     "contradicting": "warning",
     "copied-rows": "serious",
     "counted-both-ways": "info",
-    "cross-validation": "warning",
     "current-spikes": "serious",
     "curved": "warning",
     "dates-disagree": "serious",

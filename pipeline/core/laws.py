@@ -18,6 +18,8 @@ POLYNOMIAL = "polynomial"
 EXPONENTIAL = "exponential"
 POWER_LAW_TO_GEL = "power-law-to-gel"
 POWER_LAW_FLUID = "power-law-fluid"
+ARRHENIUS = "arrhenius"
+GAS_CONSTANT_J_per_molK = 8.314462618
 
 Form = Callable[
     [FloatArray, FloatArray, FloatArray | None, Sequence[int]], tuple[FloatArray, FloatArray]
@@ -74,11 +76,24 @@ def _power_law_fluid(
     return value, np.concatenate(slopes, axis=1)
 
 
+def _arrhenius(
+    c: FloatArray, x: FloatArray, _rate: FloatArray | None, _parts: Sequence[int]
+) -> tuple[FloatArray, FloatArray]:
+    r"""$y = a \exp\big(\frac{E}{R x}\big)$ with coefficients (a, E `[J/mol]`), x `[K]`.
+
+    Source: E. N. da C. Andrade, Philos. Mag. 17 (1934) 497.
+    """
+    inverse = 1.0 / (GAS_CONSTANT_J_per_molK * x)
+    growth = np.exp(c[1] * inverse)
+    return c[0] * growth, np.stack([growth, c[0] * inverse * growth], axis=1)
+
+
 FORMS: dict[str, Form] = {
     POLYNOMIAL: _polynomial,
     EXPONENTIAL: _exponential,
     POWER_LAW_TO_GEL: _power_law_to_gel,
     POWER_LAW_FLUID: _power_law_fluid,
+    ARRHENIUS: _arrhenius,
 }
 
 
@@ -94,14 +109,21 @@ def coefficient_names(kind: str, count: int, parts: Sequence[int]) -> tuple[str,
         return "a", "b"
     if kind == POWER_LAW_TO_GEL:
         return "a", "x_gel", "s"
+    if kind == ARRHENIUS:
+        return "a", "E"
     if kind == POWER_LAW_FLUID:
         return tuple(f"{name}{k}" for name, n in zip("Kn", parts, strict=True) for k in range(n))
     return tuple(f"c{k}" for k in range(count))
 
 
 def lower_bounds(kind: str, valid: tuple[float, float]) -> dict[str, float]:
-    """Lowest value of each coefficient that has one: the gel point lies after the last reading."""
-    return {"x_gel": math.nextafter(valid[1], math.inf)} if kind == POWER_LAW_TO_GEL else {}
+    """Lowest value of each coefficient that has one.
+
+    The gel point lies after the last reading; what flows more easily in the warmth has E >= 0.
+    """
+    if kind == POWER_LAW_TO_GEL:
+        return {"x_gel": math.nextafter(valid[1], math.inf)}
+    return {"a": 0.0, "E": 0.0} if kind == ARRHENIUS else {}
 
 
 def evaluate(

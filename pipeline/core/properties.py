@@ -68,6 +68,13 @@ _TABLE = (
     PropertyKey("weibull_shape_unbiased", "beta_u", "1", (0.5, 100.0), "Ross 1996"),
     PropertyKey("viscosity", "mu", "Pa.s", (1e-3, 1e5), "ASTM D2196"),
     PropertyKey(
+        "viscosity_against_temperature",
+        "mu_T",
+        "Pa.s",
+        (1e-3, 1e5),
+        "Arrhenius law, Andrade 1934",
+    ),
+    PropertyKey(
         "viscosity_at_printing_rate",
         "mu_p",
         "Pa.s",

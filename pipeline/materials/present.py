@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Mapping, Sequence
 
-from deamat.core.laws import EXPONENTIAL, POWER_LAW_FLUID, POWER_LAW_TO_GEL
+from deamat.core.laws import ARRHENIUS, EXPONENTIAL, POWER_LAW_FLUID, POWER_LAW_TO_GEL
 from deamat.core.present import (
     SYNTHETIC_BANNER,
     aligned,
@@ -102,6 +102,8 @@ def _form_text(law: Law) -> str:
     c = law.coefficients
     if law.kind == EXPONENTIAL:
         return f"{c[0]:.4g} exp({c[1]:.4g} x)"
+    if law.kind == ARRHENIUS:
+        return f"{c[0]:.4g} exp(E / (R x)), E = {c[1]:.4g} J/mol"
     if law.kind == POWER_LAW_TO_GEL:
         return f"{c[0]:.4g} (1 - x / {c[1]:.4g})^-{c[2]:.4g}"
     if law.kind == POWER_LAW_FLUID:

@@ -13,6 +13,7 @@ NAMES = {
     "polynomial": ["c0", "c1", "c2"],
     "exponential": ["a", "b"],
     "power-law-to-gel": ["a", "x_gel", "s"],
+    "arrhenius": ["a", "E"],
     "power-law-fluid": ["K0", "K1", "n0", "n1"],
 }
 
@@ -50,14 +51,17 @@ def test_it_can_be_fitted_again(kind: str) -> None:
     assert [p.value for p in fitted.params.values()] == pytest.approx(other, rel=1e-5)
 
 
-def test_only_the_gel_point_is_bounded_by_the_last_reading() -> None:
+def test_the_gel_point_lies_after_the_last_reading_and_energies_are_positive() -> None:
+    bounds = {
+        "power-law-to-gel": {"x_gel": pytest.approx(5.0)},
+        "arrhenius": {"a": 0.0, "E": 0.0},
+    }
     for kind in FORMS:
         parameters = law(kind).model()[1]
         bounded = {
             name: p.min for name, p in parameters.items() if np.isfinite([p.min, p.max]).any()
         }
-        gel = {"x_gel": pytest.approx(5.0)}
-        assert bounded == (gel if kind == "power-law-to-gel" else {})
+        assert bounded == bounds.get(kind, {})
     parameters = law("power-law-to-gel").model()[1]
     parameters["x_gel"].value = 4.0
     assert parameters["x_gel"].value > 5.0

@@ -14,6 +14,7 @@ POINTS = {
     "polynomial": ((2.0, -0.5, 0.3), (), None),
     "exponential": ((2.0, 0.2), (), None),
     "power-law-to-gel": ((2.0, 7.0, 1.3), (), None),
+    "arrhenius": ((2.0, 9.0), (), None),
     "power-law-fluid": ((5.0, 1.5, 0.4, -0.01), (2, 2), 0.27),
 }
 

@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 from deamat.core.instruments import Declared
 
 VISCOSITY = "viscosity"
+AGAINST_TEMPERATURE = "viscosity_against_temperature"
 AT_PRINTING_RATE = "viscosity_at_printing_rate"
 DOUBLING = "viscosity_doubling_time"
 LIMIT = "time_to_viscosity_limit"
@@ -18,6 +19,7 @@ CONSISTENCY_WIDE_CUP = "flow_consistency_wide_cup"
 INDEX = "flow_index"
 YIELDS = (
     VISCOSITY,
+    AGAINST_TEMPERATURE,
     AT_PRINTING_RATE,
     DOUBLING,
     LIMIT,

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused, OutOfRange
@@ -15,6 +16,8 @@ from deamat.techniques.viscosity.time_law import Estimate, TimeLaw
 # An answer and its derivatives by the coefficients of a law.
 OfLaw = Callable[[TimeLaw], tuple[float, FloatArray]]
 OfReadings = Callable[[Direct], Estimate]
+
+T = TypeVar("T")
 
 _LEAST_WEIGHT = 1e-3
 _ENOUGH_WEIGHT = 0.5
@@ -77,7 +80,7 @@ class Fitted:
         )
 
 
-def supported_of(weights: FloatArray, laws: list[TimeLaw]) -> tuple[tuple[float, TimeLaw], ...]:
-    """Leave out laws that the data all but exclude."""
-    pairs = zip(weights.tolist(), laws, strict=True)
-    return tuple((w, law) for w, law in pairs if w > _LEAST_WEIGHT)
+def supported_of(weights: FloatArray, candidates: Sequence[T]) -> tuple[tuple[float, T], ...]:
+    """Pair candidates with their weights, less those that the data all but exclude."""
+    pairs = zip(weights.tolist(), candidates, strict=True)
+    return tuple((w, candidate) for w, candidate in pairs if w > _LEAST_WEIGHT)

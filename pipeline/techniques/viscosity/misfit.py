@@ -95,15 +95,17 @@ def misfit_of(law: TimeLaw, fit: Fit, held: float, readings: Readings) -> Misfit
 
 
 def outlying_flags(fit: Fit, readings: Readings) -> tuple[Flag, ...]:
-    """Name readings far off a law; they are in it all the same."""
+    """Name readings far off a law, which stay in its fit."""
     off = outlying_points(fit)
     if not off.size:
         return ()
+    one = off.size == 1
     return (
         Flag(
             "outlying-readings",
-            f"{off.size} of {len(readings)} readings lie far off the law, which they are in all "
-            f"the same: lines {lines_text(np.sort(readings.line[off]))}",
+            f"{off.size} of {len(readings)} readings "
+            f"{'lies' if one else 'lie'} far off the law; {'it stays' if one else 'they stay'} in "
+            f"the fit: {'line' if one else 'lines'} {lines_text(np.sort(readings.line[off]))}",
         ),
     )
 

@@ -12,7 +12,7 @@ import numpy as np
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
 from deamat.core.laws import EXPONENTIAL, FORMS, POLYNOMIAL, POWER_LAW_TO_GEL, evaluate
-from deamat.core.records import Detail, Flag
+from deamat.core.records import Detail
 from deamat.estimators.least_squares.fit import Fit
 from deamat.estimators.least_squares.linear import fit_linear
 from deamat.estimators.least_squares.monotone import fit_non_decreasing
@@ -24,6 +24,7 @@ from deamat.techniques.viscosity.fitted import Fitted, supported_of
 from deamat.techniques.viscosity.misfit import (
     held_by,
     misfit_of,
+    outlying_flags,
     widened_by_choice,
     widened_by_misfit,
 )
@@ -31,8 +32,6 @@ from deamat.techniques.viscosity.readings import Readings
 from deamat.techniques.viscosity.time_law import TimeLaw, drift_of, relative_error
 from deamat.techniques.viscosity.window import Windowed, combined, common_range
 
-# A law that predicts left-out readings worse than the best by more than this is flagged.
-_PREDICTS_WORSE = 1.1
 # A law of another form must be exp(3 / 2) times better supported than a polynomial to weigh as
 # much: with few coefficients it comes near a polynomial of many, and its interval lacks its bias.
 _ANOTHER_FAMILY = 3.0
@@ -59,12 +58,11 @@ class LawFit(Fit):
 def fit_newtonian(windows: Sequence[Windowed], config: ViscosityConfig) -> Fitted:
     """Choose the smallest law that the readings support and say what it is worth.
 
-    Polynomials are kept positive and from falling; candidates are compared by AICc and the choice
-    is checked by leave-one-out cross-validation (see `estimators.selection`); a tolerance in the
-    configuration takes a cheaper one where that answers as well as asked. Answers are those of all
-    laws that the data do not tell apart, or of the readings where the law misses these (see
-    `misfit`). What changes of rotor or speed show of the calibration error is taken off first (see
-    `calibration`).
+    Polynomials are kept positive and from falling; candidates are compared by AICc (see
+    `estimators.selection`); a tolerance in the configuration takes a cheaper one where that answers
+    as well as asked. Answers are those of all laws that the data do not tell apart, or of the
+    readings where the law misses these (see `misfit`). What changes of rotor or speed show of the
+    calibration error is taken off first (see `calibration`).
 
     Raises
     ------
@@ -85,7 +83,7 @@ def fit_newtonian(windows: Sequence[Windowed], config: ViscosityConfig) -> Fitte
             "calibration_left": steps.left,
             **scores(choice),
         },
-        flags=(*steps.flags, *_flags(choice)),
+        flags=steps.flags,
     )
     if law.relative_error > config.max_relative_error:
         raise FitRefused(
@@ -97,9 +95,13 @@ def fit_newtonian(windows: Sequence[Windowed], config: ViscosityConfig) -> Fitte
     missed = misfit_of(law, choice.fit, choice.fit.held, readings)
     if missed is not None:
         return Fitted(widened_by_misfit(law, missed), ((1.0, law),), missed.direct)
+    if len(windows) == 1:  # of several runs each has said so already, with the lines of its file
+        law = replace(law, flags=(*law.flags, *outlying_flags(choice.fit, readings)))
     handicaps = [0.0 if f.kind == POLYNOMIAL else _ANOTHER_FAMILY for _, f in choice.scored]
     weights = akaike_weights([f for _, f in choice.scored], handicaps)
-    supported = supported_of(weights, [law_of(n, f) for n, f in choice.scored])
+    possible = supported_of(weights, choice.scored)
+    richest = max((f for _, (_, f) in possible), key=lambda f: f.parameter_count)
+    supported = tuple((w, _with_noise_of(richest, law_of(n, f), f)) for w, (n, f) in possible)
     asked_for = config.answer_within is not None
     return widened_by_choice(Fitted(law, supported, asked_for=asked_for))
 
@@ -125,6 +127,18 @@ def _time_law(name: str, fit: LawFit, readings: Readings, windows: Sequence[Wind
         reason="",
         diagnostics={},
     )
+
+
+def _with_noise_of(richest: LawFit, law: TimeLaw, fit: LawFit) -> TimeLaw:
+    """Take the scatter of readings from the residuals of one law for all.
+
+    A law weighs more where its own residuals happen to be small, so that intervals from these come
+    out too narrow; those of the richest law on offer were not chosen for their size.
+    """
+    if not (richest.residual_sd > 0 and fit.residual_sd > 0):
+        return law
+    ratio = richest.residual_sd / fit.residual_sd
+    return replace(law, covariance=ratio**2 * law.covariance, dof=richest.dof)
 
 
 def _chosen(readings: Readings, config: ViscosityConfig) -> Choice[LawFit]:
@@ -276,20 +290,3 @@ def scores(choice: Choice[LawFit]) -> dict[str, Detail]:
         if tried.leave_one_out_sd is not None:
             said[f"leave-one-out {tried.name}"] = tried.leave_one_out_sd
     return said
-
-
-def _flags(choice: Choice[LawFit]) -> tuple[Flag, ...]:
-    """Flag a choice that cross-validation does not bear out."""
-    predicted = {t.name: t.leave_one_out_sd for t in choice.tried if t.leave_one_out_sd is not None}
-    if choice.name not in predicted:
-        return ()
-    best = min(predicted, key=lambda name: predicted[name])
-    if predicted[choice.name] <= _PREDICTS_WORSE * predicted[best]:
-        return ()
-    return (
-        Flag(
-            "cross-validation",
-            f"left-out readings are predicted to {predicted[choice.name]:.3g} sigma by "
-            f"{choice.name} and to {predicted[best]:.3g} by {best}",
-        ),
-    )

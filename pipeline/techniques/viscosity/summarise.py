@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 from deamat.core.errors import FitRefused
 from deamat.core.recording import Specimen
@@ -11,7 +12,14 @@ from deamat.core.records import Measurement, Summary
 from deamat.core.technique import Context
 from deamat.techniques.shared.mean import summarise_by_mean
 from deamat.techniques.shared.outcome import refusal
-from deamat.techniques.viscosity.config import ALWAYS, VISCOSITY, YIELDS, ViscosityConfig
+from deamat.techniques.viscosity.against_temperature import temperature_laws
+from deamat.techniques.viscosity.config import (
+    AGAINST_TEMPERATURE,
+    ALWAYS,
+    VISCOSITY,
+    YIELDS,
+    ViscosityConfig,
+)
 from deamat.techniques.viscosity.pooled import fit_runs, laws_of, refuse_mixed_units
 from deamat.techniques.viscosity.readings import Readings
 from deamat.techniques.viscosity.result import Run
@@ -26,7 +34,9 @@ def summarise(
     config = context.config
     ordered = sorted(measurements, key=lambda m: (m.specimen.line, m.specimen.id))
     tolerance_K = config.temperature_tolerance_K
-    summary = summarise_by_mean(alike(ordered, tolerance_K), "viscosity", YIELDS)
+    summary = _with_temperature_law(
+        summarise_by_mean(alike(ordered, tolerance_K), "viscosity", YIELDS), ordered[0].specimen
+    )
     runs = [
         (m.specimen, windowed(m.result, config, stated_temperature_K(m.specimen)))
         for m in ordered
@@ -46,11 +56,20 @@ def summarise(
         law, levels = fit_runs(windows, config)
     except FitRefused as error:
         refused = refusal(specimen, VISCOSITY, error, {})
-        return Summary(summary.records, (), (*summary.refusals, refused))
+        return Summary(summary.records, summary.laws, (*summary.refusals, refused))
     origins = next((r.origins for r in summary.records if r.key == VISCOSITY), ())
     method = windows[0].rule
     laws = laws_of(law, levels, specimen, method, origins, _temperature_K(specimens, windows))
-    return Summary(summary.records, laws, summary.refusals)
+    return Summary(summary.records, (*laws, *summary.laws), summary.refusals)
+
+
+def _with_temperature_law(summary: Summary, specimen: Specimen) -> Summary:
+    """Add the law of viscosity against temperature where three temperatures or more tell it."""
+    try:
+        return replace(summary, laws=temperature_laws(summary.records, specimen))
+    except FitRefused as error:
+        refused = refusal(specimen, AGAINST_TEMPERATURE, error, {})
+        return replace(summary, refusals=(*summary.refusals, refused))
 
 
 def _temperature_K(runs: Sequence[Specimen], windows: Sequence[Windowed]) -> float | None:

@@ -17,13 +17,13 @@ import numpy as np
 
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
+from deamat.core.laws import GAS_CONSTANT_J_per_molK
 from deamat.core.records import Flag, MeasuredValue, Measurement
 from deamat.estimators.least_squares.linear import fit_linear
 from deamat.techniques.viscosity.config import ViscosityConfig
 from deamat.techniques.viscosity.readings import ZERO_C_K, Readings, tenth_of_degree
 from deamat.techniques.viscosity.result import Run
 
-GAS_CONSTANT_J_per_molK = 8.314462618
 _DEGREE = 5
 _SMOOTHED = 5
 # A fitted energy is used if what it corrects is known to this part of the viscosity, and if it is

@@ -77,6 +77,17 @@ def test_bubbles_are_left_out_by_line(low: float) -> None:
     assert at(measured, 6.0).quantity.value == pytest.approx(2.24, rel=0.01)
 
 
+def test_a_last_reading_far_off_is_named_and_stays_in() -> None:
+    seen = RISES.copy()
+    seen[-3] *= 1.05  # at 12 h, where nothing after it says that it is wrong
+    measured = reduce(run(seen))
+    assert flags(measured)["outlying-readings"] == (
+        "1 of 45 readings lies far off the law; it stays in the fit: line 49"
+    )
+    low, high = at(measured, 6.0).ci95
+    assert low <= 2.24 <= high
+
+
 def test_where_no_law_follows_the_readings_nearby_answer() -> None:
     hours = TIMES / HOUR
     gels = 1.5 * (1.0 + 0.01 * hours) * (1.0 + 4.5 * np.clip((hours - 8.0) / 4.0, 0.0, None) ** 2)

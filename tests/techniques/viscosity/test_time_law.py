@@ -20,8 +20,11 @@ from deamat.formats.detect import detect
 from deamat.formats.rawfile import RawFile
 from deamat.techniques import viscosity
 from deamat.techniques.viscosity.config import ViscosityConfig
+from deamat.techniques.viscosity.pooled import fit_law
+from deamat.techniques.viscosity.readings import audited
 from deamat.techniques.viscosity.result import Run
 from deamat.techniques.viscosity.time_law import drift_of
+from deamat.techniques.viscosity.window import windowed
 from tests.techniques.viscosity.runs import (
     CONTEXT,
     HOUR,
@@ -33,6 +36,7 @@ from tests.techniques.viscosity.runs import (
 )
 
 TIMES = np.arange(0.25, 13.01, 0.25) * HOUR
+CONFIG = ViscosityConfig()
 
 
 def line(time_s: FloatArray) -> FloatArray:
@@ -379,3 +383,20 @@ def _resin(row: Specimen, folder: Path, context: Context[ViscosityConfig]) -> Me
     path = folder / "curves" / str(row.file).rpartition("/")[2]
     file = RawFile(path.name, path.read_bytes())
     return viscosity.TECHNIQUE.reduce(row, detect(file).read(file), context)
+
+
+def test_all_supported_laws_take_their_scatter_from_the_richest() -> None:
+    hours, rng = np.arange(1.0, 13.0), np.random.default_rng(6)
+    shown = (1.64 + 0.267 * hours) * (1.0 + 0.03 * rng.normal(size=12))
+    whole = audited(
+        recording({"time_s": hours * HOUR, "viscosity_Pas": shown}), hours * HOUR, MACHINE, CONFIG
+    )
+    fitted = fit_law([windowed(whole, CONFIG)], CONFIG)
+    assert {law.dof for _, law in fitted.supported} == {6}  # 12 readings less 6 coefficients
+    scatter = {law.name: law.estimate(*law.at(6 * HOUR)).scatter for _, law in fitted.supported}
+    plain = np.polynomial.polynomial.polyfit(hours, shown, 5, w=1.0 / shown)
+    left = (shown - np.polynomial.polynomial.polyval(hours, plain)) / shown
+    design = np.stack([np.ones(12), hours], axis=1) / shown[:, None]
+    at = np.array([1.0, 6.0])
+    by_hand = np.sqrt(at @ np.linalg.inv(design.T @ design) @ at * (left @ left) / 6)
+    assert scatter["polynomial of degree 1"] == pytest.approx(by_hand, rel=1e-6)
