@@ -1,4 +1,4 @@
-"""Registers: `specimens.csv`, one row per specimen, units in the header.
+"""Registers: `specimens.csv` (or `.xlsx`, `.ods`), one row per specimen, units in the header.
 
 A technique whose register holds one row per observation declares another `RegisterForm`.
 
@@ -10,11 +10,9 @@ is one that is nearly a known column. Every bad row is an error of its own; the 
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from deamat.core.dates import read_date
@@ -26,10 +24,13 @@ from deamat.core.recording import Specimen
 from deamat.core.records import Condition
 from deamat.core.register_bounds import possible
 from deamat.core.register_columns import CONDITION_COLUMNS, Column, numeric_columns
+from deamat.core.register_table import decimal_comma, read_table
 from deamat.core.slug import Spellings, label_fault, nearest_label, nearest_slug, slug_fault
 
 REGISTER_FILE = "specimens.csv"
-REGISTER_FILES = (REGISTER_FILE, "observations.csv")
+REGISTER_FILES = tuple(
+    stem + ending for stem in ("specimens", "observations") for ending in (".csv", ".xlsx", ".ods")
+)
 
 DATE_COLUMNS = ("cured_on", "tested_on")
 _TINIEST, _LARGEST = 1e-30, 1e30  # in SI: no measured number is smaller or larger
@@ -54,7 +55,7 @@ class RegisterForm:
 
     Parameters
     ----------
-    file : its name in the technique's folder, one of `REGISTER_FILES`
+    file : its name in the technique's folder; it may be a workbook of that name (`REGISTER_FILES`)
     text : text columns that every row must fill
     identity : columns (a text column, or a number by its SI name) whose cells name a row
     conditions : number by its SI name (`bed_temperature_K`) to the condition key that it gives
@@ -108,24 +109,23 @@ def read_register(
     ------
     RawFileError : the header itself is unusable (no `specimen` column, unknown unit, ...)
     """
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        hint = "save it as UTF-8 CSV"
-        raise RawFileError(path, "a register must be UTF-8", None, None, None, hint) from error
-    rows = _rows(text, path)
-    header = [cell.strip() for cell in next(rows, (1, []))[1]]
+    table = read_table(data, path, form.text)
+    header = table.header
     if not header:
         raise RawFileError(path, "an empty register")
     columns = numeric_columns(header, path, required, form.text, form.notes)
-    reader = _Rows(path, campaign, technique, header, columns, required, gauges, form)
+    commas = table.separator != "," and decimal_comma(
+        row[column.index].strip()
+        for _, row in table.rows
+        for column in columns.values()
+        if len(row) > column.index
+    )
+    reader = _Rows(path, campaign, technique, header, columns, required, gauges, form, commas)
     spellings = Spellings() if spellings is None else spellings
     specimens: list[Specimen] = []
     errors: list[tuple[str | None, RawFileError]] = []
     seen: dict[str, int] = {}
-    for line, row in rows:
-        if not any(cell.strip() for cell in row):
-            continue
+    for line, row in table.rows:
         try:
             specimen = reader.specimen(row, line)
             reader.spelt_once(specimen, seen, spellings)
@@ -136,22 +136,13 @@ def read_register(
     return Register(() if form.whole and errors else tuple(specimens), tuple(errors))
 
 
-def _rows(text: str, path: str) -> Iterator[tuple[int, list[str]]]:
-    """Each row with the line that it ends in."""
-    rows = csv.reader(io.StringIO(text, newline=""))
-    try:
-        for row in rows:
-            yield rows.line_num, row
-    except csv.Error as error:
-        raise RawFileError(path, f"not CSV: {error}", rows.line_num) from error
-
-
 @dataclass
 class _Rows:
     """Reads the rows under one header; what many rows have in common is read once.
 
     Parameters
     ----------
+    decimal_comma : numbers have one
     quantities : by column and cells
     sound : names that passed, by column
     """
@@ -164,6 +155,7 @@ class _Rows:
     required: Sequence[str]
     gauges: Mapping[str, Gauge]
     form: RegisterForm
+    decimal_comma: bool = False
     quantities: dict[tuple[str, str, str], Quantity] = field(default_factory=dict)
     sound: set[tuple[str, str]] = field(default_factory=set)
 
@@ -334,6 +326,7 @@ class _Rows:
         return found
 
     def _number(self, cell: str, line: int, column: Column) -> float:
+        cell = cell.replace(",", ".", 1) if self.decimal_comma else cell
         if not is_number(cell):
             hint = "write it with a decimal point"
             raise RawFileError(self.path, "not a number", line, column.index + 1, cell, hint)

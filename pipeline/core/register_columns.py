@@ -13,7 +13,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from deamat.core.errors import RawFileError
-from deamat.core.units import UNITS, known, si_factor
+from deamat.core.unit_spellings import unit_as_written
+from deamat.core.units import UNITS, UnknownUnit, known, si_factor
 
 CONDITION_COLUMNS = ("age", "cure", "electrode")
 # Text columns of any technique that something reads.
@@ -33,6 +34,7 @@ _USUAL = (
 _USUAL_BESIDE = ("mass_g",)
 _ALSO = {"speed": ("rpm",), "rate": ("1/s",)}  # SI units beside that of the usual column
 _NOTES_ONE_LETTER_AWAY = frozenset({"film", "curve", "core"})
+_BRACKETED = re.compile(r"(.*?)\s*(?:\[([^\[\]]+)\]|\(([^()]+)\)|\s/\s*(\S+))")
 _AGE_IN_NUMBERS = re.compile(r"age_(h|d|w|y|hours?|days?|weeks?|months?|years?)")
 
 
@@ -129,11 +131,10 @@ def numeric_columns(
 
 def _number(at: int, label: str, path: str, words: Iterable[str]) -> Column | None:
     """Read one label as a numeric column; None if it is a note."""
-    stem, unit = split_unit(label)
-    base = stem.removeprefix("u_")
-    units = _STEMS.get(base)
+    stem, unit = _bracketed(label) or split_unit(label)
+    units = _STEMS.get(stem.removeprefix("u_"))
     if unit is not None and units is not None:
-        _fits(at, label, unit, units, path)
+        _fits(at, label, stem, unit, units, path)
     elif (meant := _meant(label, words)) is not None:
         raise RawFileError(
             path, "not a known column, but nearly one", 1, at + 1, label,
@@ -146,12 +147,27 @@ def _number(at: int, label: str, path: str, words: Iterable[str]) -> Column | No
     return Column(at, label, si_name(stem, si), si, factor, offset)
 
 
-def _fits(at: int, label: str, unit: str, units: Sequence[str], path: str) -> None:
+def _bracketed(label: str) -> tuple[str, str] | None:
+    """Split `Diameter [mm]`, `Gauge length (mm)` or `Speed / mm/min`; None for other labels."""
+    found = _BRACKETED.fullmatch(label)
+    if found is None:
+        return None
+    stem = re.sub(r"[\s_-]+", "_", found[1].strip()).casefold()
+    if stem.removeprefix("u_") not in _STEMS:
+        return None
+    try:
+        unit = unit_as_written(next(part for part in found.groups()[1:] if part))
+    except UnknownUnit:
+        return None
+    return None if unit is None else (stem, unit)
+
+
+def _fits(at: int, label: str, stem: str, unit: str, units: Sequence[str], path: str) -> None:
     """Refuse a unit of something else, and metres: nobody measures a specimen in them."""
-    base = label.removeprefix("u_")
-    usual = label[: len(label) - len(base)] + _USUAL_OF[split_unit(base)[0]]
+    base = stem.removeprefix("u_")
+    usual = stem[: len(stem) - len(base)] + _USUAL_OF[base]
     if si_factor(unit)[0] not in units:
-        reason = f"{unit} is not a unit of {split_unit(base)[0]}"
+        reason = f"{unit} is not a unit of {base}"
     elif unit == "m":
         reason = "a specimen measured in metres"
     else:
@@ -160,7 +176,7 @@ def _fits(at: int, label: str, unit: str, units: Sequence[str], path: str) -> No
 
 
 def _carries_unit(at: int, label: str, path: str) -> None:
-    base = label.casefold().removeprefix("u_")
+    base = re.sub(r"\s*[\[(]", "_", label.casefold()).removeprefix("u_")
     for stem in _ALWAYS_WITH_UNIT:
         if base == stem or base.startswith(stem + "_"):
             near = difflib.get_close_matches(base.rpartition("_")[2], UNITS, n=3)

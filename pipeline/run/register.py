@@ -15,8 +15,8 @@ from deamat.core.campaign import CAMPAIGN_FILE, MANIFEST_FILE
 from deamat.core.errors import ConfigError, RawFileError
 from deamat.core.manifest import Difference, compare, format_manifest, parse_manifest
 from deamat.formats.rawfile import read_raw
+from deamat.run.first_account import extended
 from deamat.run.folders import Stat, walk
-from deamat.run.survey import extended
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,30 +2,30 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from pathlib import Path
-from typing import Literal
 
-from deamat.core.campaign import CAMPAIGN_FILE, MANIFEST_FILE, Campaign, load_campaign
+from deamat.core.campaign import CAMPAIGN_FILE, Campaign, load_campaign
 from deamat.core.config import Config
 from deamat.core.errors import RawFileError
 from deamat.core.ledger import Failure, FileEntry, Role
-from deamat.core.manifest import Difference, compare, extends, parse_manifest
 from deamat.core.recording import Specimen
 from deamat.core.records import Excluded
-from deamat.core.register import REGISTER_FILES, SHEET, read_register
+from deamat.core.register import (
+    SHEET,
+    RegisterForm,
+    read_register,
+    split_sheet,
+)
+from deamat.core.register_table import read_table
 from deamat.core.slug import Spellings
 from deamat.core.technique import AnyTechnique
 from deamat.formats.documentation import stated_units
 from deamat.formats.rawfile import read_raw
+from deamat.run.first_account import content_of, entry_of, is_register, manifest_of, role_of
 from deamat.run.folders import Input
-from deamat.run.other_folders import is_picture, no_technique
-
-_DOCUMENTS = (".md", ".pdf", ".rst")
+from deamat.run.other_folders import no_technique
 
 
 @dataclass
@@ -62,9 +62,9 @@ def survey(
     spellings : of the names in the configuration and in the campaigns surveyed before
     """
     result = Survey(None)
-    difference, broken = _manifest(folder, inputs)
+    difference, broken = manifest_of(folder, inputs)
     for path, found in inputs.items():
-        result.entries[path] = _entry(path, found, difference, techniques)
+        result.entries[path] = entry_of(path, found, difference, techniques)
     if broken:
         _reject(result, broken)
     for name in difference.missing:
@@ -76,7 +76,7 @@ def survey(
     _exclude(result, config)
     try:
         campaign_file = f"{folder.name}/{CAMPAIGN_FILE}"
-        campaign = load_campaign(folder, _content(campaign_file, folder, inputs))
+        campaign = load_campaign(folder, content_of(campaign_file, folder, inputs))
         if other := spellings.other("campaign", folder.name, "raw/"):
             reason = f"the folder of another campaign differs only in case: {other}"
             raise RawFileError(campaign_file, reason)
@@ -104,7 +104,7 @@ def without_survey(
     """Account for the files of a campaign whose survey ended in an internal error."""
     entries = {
         path: failed(
-            FileEntry(path, one.sha256, one.size, _role(path, techniques), "used"), failure
+            FileEntry(path, one.sha256, one.size, role_of(path, techniques), "used"), failure
         )
         for path, one in inputs.items()
     }
@@ -127,18 +127,6 @@ def survey_strays(raw: Mapping[str, Input], config: Config) -> Survey:
     return result
 
 
-def _content(path: str, folder: Path, inputs: Mapping[str, Input]) -> bytes:
-    """Read a file of a campaign, if it is one that may be opened.
-
-    Raises
-    ------
-    RawFileError : it may not, or cannot be read any more
-    """
-    if inputs[path].odd:
-        raise RawFileError(path, inputs[path].odd)
-    return read_raw(folder.parent, path)
-
-
 def _readable(paths: Sequence[str], folder: Path, result: Survey) -> Iterator[tuple[str, bytes]]:
     """Read those files that nothing speaks against; one that cannot be read is rejected."""
     for path in paths:
@@ -153,65 +141,6 @@ def _readable(paths: Sequence[str], folder: Path, result: Survey) -> Iterator[tu
 
 def _text(path: str) -> bool:
     return path.lower().endswith((".txt", ".md", ".rst"))
-
-
-def _entry(
-    path: str, found: Input, difference: Difference, techniques: Mapping[str, AnyTechnique]
-) -> FileEntry:
-    name = path.partition("/")[2]
-    role, size, sha256 = _role(path, techniques), found.size, found.sha256
-    if found.odd:
-        changed = name in difference.changed
-        manifest: Literal["changed", "ok"] = "changed" if changed else "ok"
-        return FileEntry(path, sha256, size, role, "rejected", manifest, found.odd)
-    if name in difference.changed:
-        reason = "file content differs from the manifest"
-        return FileEntry(path, sha256, size, role, "used", "changed", reason)
-    if name in difference.extended:
-        reason = "rows were appended since it was registered"
-        return FileEntry(path, sha256, size, role, "used", "extended", reason)
-    if name in difference.extra:
-        return FileEntry(path, sha256, size, role, "used", "extra", "not in the manifest")
-    return FileEntry(path, sha256, size, role, "used")
-
-
-def _role(path: str, techniques: Mapping[str, AnyTechnique]) -> Role:
-    parts = path.split("/")
-    if len(parts) == 2:
-        if parts[1] == CAMPAIGN_FILE:
-            return "campaign"
-        return "manifest" if parts[1] == MANIFEST_FILE else "document"
-    if len(parts) == 3 and parts[2] in REGISTER_FILES:
-        return "register"
-    if parts[-1].lower().endswith(_DOCUMENTS):
-        return "document"
-    if parts[1] not in techniques and is_picture(path):
-        return "document"
-    return "unnamed"
-
-
-def _manifest(folder: Path, inputs: Mapping[str, Input]) -> tuple[Difference, RawFileError | None]:
-    path = f"{folder.name}/{MANIFEST_FILE}"
-    found = {p.partition("/")[2]: one.sha256 for p, one in inputs.items() if p != path}
-    if path not in inputs:
-        return compare({}, found), None
-    try:
-        text = _content(path, folder, inputs).decode("utf-8")
-        return compare(parse_manifest(text, path), found, partial(extended, folder)), None
-    except UnicodeDecodeError as error:
-        return compare({}, found), RawFileError(path, f"not UTF-8: {error}")
-    except RawFileError as error:
-        return compare({}, found), error
-
-
-def extended(folder: Path, name: str, sha256: str) -> bool:
-    """Say whether a register of a campaign is the one registered with rows appended."""
-    if name.count("/") != 1 or name.partition("/")[2] not in REGISTER_FILES:
-        return False
-    try:
-        return extends(read_raw(folder.parent, f"{folder.name}/{name}"), sha256)
-    except RawFileError:
-        return False
 
 
 def _exclude(result: Survey, config: Config) -> None:
@@ -250,10 +179,7 @@ def _register(
         return
     form = techniques[name].register
     try:
-        if path != f"{folder.name}/{name}/{form.file}":
-            raise RawFileError(
-                path, f"the register of {name} is called {form.file}", hint="give it that name"
-            )
+        _is_the_register(path, form, name, result)
         register = read_register(
             data, path, folder.name, name, techniques[name].required, config.instruments.gauges,
             form, spellings,
@@ -314,6 +240,31 @@ def _account_for_excluded(
         _leave_out(file, excluded.reason, result)
 
 
+def _is_the_register(path: str, form: RegisterForm, technique: str, result: Survey) -> None:
+    """Insist on the name of the technique's register, as text or workbook, and on one of them.
+
+    Raises
+    ------
+    RawFileError : another name, or one of several
+    """
+    stem = path.rpartition(".")[0]
+    if stem.rpartition("/")[2] != form.file.rpartition(".")[0]:
+        raise RawFileError(
+            path, f"the register of {technique} is called {form.file}", hint="give it that name"
+        )
+    other = next(
+        (
+            p
+            for p in result.entries
+            if p != path and p.rpartition(".")[0] == stem and is_register(p)
+        ),
+        None,
+    )
+    if other is not None:
+        reason = f"two registers of {technique}: this one and {other}"
+        raise RawFileError(path, reason, hint="keep one of them")
+
+
 def _claim(specimen: Specimen, result: Survey, owners: dict[str, Specimen]) -> bool:
     """Return a row its file, once; say whether the row can be measured.
 
@@ -367,16 +318,16 @@ def _reject_rows(
 
 def _files_named(data: bytes, path: str) -> list[str]:
     """The files that a register names, read without understanding the rest of it."""
-    text = data.decode("utf-8-sig", "replace")
     try:
-        rows = list(csv.reader(io.StringIO(text, newline="")))
-    except csv.Error:
+        table = read_table(data, path, ["file"])
+    except RawFileError:
         return []
-    if not rows or "file" not in [h.strip() for h in rows[0]]:
+    if "file" not in table.header:
         return []
-    at = [h.strip() for h in rows[0]].index("file")
+    at = table.header.index("file")
     folder = path.rpartition("/")[0]
-    return [f"{folder}/{row[at].strip()}" for row in rows[1:] if len(row) > at and row[at].strip()]
+    named = [row[at].strip() for _, row in table.rows if len(row) > at]
+    return [f"{folder}/{split_sheet(file)[0]}" for file in named if file]
 
 
 def _unnamed(result: Survey, folder: Path, techniques: Mapping[str, AnyTechnique]) -> None:

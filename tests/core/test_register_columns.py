@@ -40,9 +40,7 @@ def _columns(*further: str) -> dict[str, Column]:
         ("temperature_c", "temperature_C"),
         ("temprature_C", "temperature_C"),
         ("temprature", "temperature_C"),
-        ("Humidity (%)", "humidity_%"),
         ("THICKNESS_MM", "thickness_mm"),
-        ("Thickness (mm)", "thickness_mm"),
         ("hieght_mm", "height_mm"),
         ("u_widht_mm", "u_width_mm"),
         ("U_diameter_mm", "u_diameter_mm"),
@@ -100,3 +98,42 @@ def test_a_note_stays_a_note(label: str) -> None:
 )
 def test_other_numbers_stay_numbers(label: str, name: str) -> None:
     assert set(_columns(label)) == {"diameter_m", name}
+
+
+@pytest.mark.parametrize(
+    ("label", "name", "factor"),
+    [
+        ("Diameter [mm]", "diameter_m", 1e-3),
+        ("Gauge length (mm)", "gauge_length_m", 1e-3),
+        ("thickness / um", "thickness_m", 1e-6),
+        ("Speed [mm/min]", "speed_m_per_s", 1e-3 / 60),
+        ("u_Diameter [mm]", "u_diameter_m", 1e-3),
+        ("Electrode area [mm2]", "electrode_area_m2", 1e-6),
+        ("Humidity (%)", "humidity", 0.01),
+    ],
+)
+def test_a_unit_in_brackets_is_the_unit_of_its_column(label: str, name: str, factor: float) -> None:
+    extra = ["diameter_mm"] if name == "u_diameter_m" else []
+    header = ["specimen", "material", *extra, label]
+    column = numeric_columns(header, "r.csv", (), ("specimen", "material"), ())[name]
+    assert column.factor == pytest.approx(factor)
+    assert column.header == label
+
+
+@pytest.mark.parametrize(
+    ("label", "reason"),
+    [
+        ("Diameter [N]", "N is not a unit of diameter"),
+        ("Diameter [m]", "a specimen measured in metres"),
+        ("Diameter [furlong]", "a quantity without a known unit in its column name"),
+    ],
+)
+def test_a_wrong_unit_in_brackets_is_an_error(label: str, reason: str) -> None:
+    with pytest.raises(RawFileError) as caught:
+        numeric_columns(["specimen", "material", label], "r.csv", (), ("specimen",), ())
+    assert caught.value.reason == reason
+
+
+def test_brackets_behind_other_words_stay_a_note() -> None:
+    header = ["specimen", "material", "Batch (B)", "Remark [free]"]
+    assert numeric_columns(header, "r.csv", (), ("specimen",), ()) == {}

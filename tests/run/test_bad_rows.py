@@ -22,7 +22,7 @@ def _reasons(folder: Path, rows: str, *files: str) -> dict[str, list[str]]:
 
 
 def test_bad_rows_without_a_file_are_all_named_at_the_register(tmp_path: Path) -> None:
-    found = _reasons(tmp_path / "demo", "a,M,,28,12\nb,m,,0,12\nc,m,,28,12,\n")
+    found = _reasons(tmp_path / "demo", "a,M,,28,12\nb,m,,0,12\nc,m,,28,12,x\n")
     assert found == {
         _REGISTER: [
             "line 2, column 2: an id starts with a lower-case letter or a digit (found 'M'); "

@@ -1,0 +1,107 @@
+"""Sheets of workbooks as cells: read for registers, written for people to fill in."""
+
+from __future__ import annotations
+
+import io
+import math
+import struct
+import zipfile
+import zlib
+from collections.abc import Sequence
+from datetime import date, datetime, time, timedelta
+from xml.sax.saxutils import escape
+
+from deamat.core.errors import RawFileError
+
+ARCHIVE = b"PK\x03\x04"
+_LARGEST = 1 << 27  # bytes of an archive unpacked: no register is larger
+_AGAIN = "open it in the spreadsheet program and save it again, or save the sheet as CSV"
+# What zipfile raises on a damaged archive: NotImplementedError for a compression method that a
+# flipped byte names, RuntimeError for a part that it marks as encrypted.
+_DAMAGED = (
+    zipfile.BadZipFile, zlib.error, struct.error, NotImplementedError, RuntimeError, OSError,
+    EOFError, ValueError,
+)  # fmt: skip
+_EPOCH = (1980, 1, 1, 0, 0, 0)  # of every part: same rows, same bytes
+
+Cell = str | float | int | bool | date | datetime | time | timedelta
+
+
+def read_sheets(data: bytes, path: str) -> list[tuple[str, list[list[str]]]]:
+    """Read every sheet of a workbook as rows of text, from its first row and column on.
+
+    Raises
+    ------
+    RawFileError : no workbook, a damaged or a huge one
+    """
+    from python_calamine import CalamineError, CalamineWorkbook, ZipError
+
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            if math.fsum(part.file_size for part in archive.infolist()) > _LARGEST:
+                raise RawFileError(path, "a workbook too large to unpack")
+        book = CalamineWorkbook.from_filelike(io.BytesIO(data))
+        sheets = [
+            (name, book.get_sheet_by_name(name).to_python(skip_empty_area=False))
+            for name in book.sheet_names
+        ]
+    except (CalamineError, ZipError, *_DAMAGED) as error:
+        raise RawFileError(path, f"a workbook that cannot be read: {error}", hint=_AGAIN) from error
+    return [(name, [list(map(as_text, row)) for row in rows]) for name, rows in sheets]
+
+
+def as_text(cell: Cell) -> str:
+    """Write a cell as a register does: numbers with a point, days as 2022-01-31."""
+    if isinstance(cell, bool):
+        return str(cell).upper()
+    if isinstance(cell, float):
+        return str(int(cell)) if cell.is_integer() and abs(cell) < 1e15 else repr(cell)
+    if isinstance(cell, datetime):
+        whole_day = (cell.hour, cell.minute, cell.second) == (0, 0, 0)
+        return cell.date().isoformat() if whole_day else cell.isoformat(timespec="seconds")
+    return " ".join(str(cell).split())
+
+
+def write_sheet(name: str, rows: Sequence[Sequence[str | float]]) -> bytes:
+    """Return an .xlsx workbook of one sheet; texts are inline, so that none is ever a formula."""
+    lines = "".join(
+        f'<row r="{at}">' + "".join(map(_cell_xml, row)) + "</row>"
+        for at, row in enumerate(rows, start=1)
+    )
+    main = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
+    office = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
+    package = "http://schemas.openxmlformats.org/package/2006"
+    kind = "application/vnd.openxmlformats-officedocument.spreadsheetml"
+    parts = {
+        "[Content_Types].xml": f'<Types xmlns="{package}/content-types">'
+        '<Default Extension="rels" '
+        'ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
+        f'<Override PartName="/xl/workbook.xml" ContentType="{kind}.sheet.main+xml"/>'
+        f'<Override PartName="/xl/worksheets/sheet1.xml" ContentType="{kind}.worksheet+xml"/>'
+        "</Types>",
+        "_rels/.rels": f'<Relationships xmlns="{package}/relationships"><Relationship Id="rId1" '
+        f'Type="{office}/officeDocument" Target="xl/workbook.xml"/></Relationships>',
+        "xl/_rels/workbook.xml.rels": f'<Relationships xmlns="{package}/relationships">'
+        f'<Relationship Id="rId1" Type="{office}/worksheet" Target="worksheets/sheet1.xml"/>'
+        "</Relationships>",
+        "xl/workbook.xml": f'<workbook xmlns="{main}" xmlns:r="{office}"><sheets>'
+        f'<sheet name="{escape(name, _QUOTE)}" sheetId="1" r:id="rId1"/></sheets></workbook>',
+        "xl/worksheets/sheet1.xml": f'<worksheet xmlns="{main}"><sheetData>{lines}</sheetData>'
+        "</worksheet>",
+    }
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
+        for part, xml in parts.items():
+            head = '<?xml version="1.0" encoding="UTF-8" standalone="yes"?>\n'
+            archive.writestr(zipfile.ZipInfo(part, _EPOCH), head + xml, zipfile.ZIP_DEFLATED)
+    return out.getvalue()
+
+
+_QUOTE = {'"': "&quot;"}
+
+
+def _cell_xml(cell: str | float) -> str:
+    if isinstance(cell, str):
+        kept = "".join(c for c in cell if c.isprintable())
+        return f'<c t="inlineStr"><is><t xml:space="preserve">{escape(kept)}</t></is></c>'
+    return f"<c><v>{cell!r}</v></c>"
