@@ -70,11 +70,6 @@ def si_name(stem: str, si_unit: str) -> str:
     return stem if si_unit == "1" else f"{stem}_{si_unit.replace('/', '_per_').replace('.', '')}"
 
 
-def usual_column(name: str) -> str:
-    """Return how a register usually heads a number: `diameter_mm` for `diameter_m`."""
-    return _USUAL_OF.get(name.rpartition("_")[0], name)
-
-
 def _stem_units(usual: str) -> tuple[str, tuple[str, ...]]:
     stem, unit = split_unit(usual)
     return stem, (si_factor(unit or "1")[0], *_ALSO.get(stem, ()))
@@ -82,7 +77,27 @@ def _stem_units(usual: str) -> tuple[str, tuple[str, ...]]:
 
 _STEMS = dict(map(_stem_units, (*_USUAL, *_USUAL_BESIDE)))
 _USUAL_OF = {split_unit(usual)[0]: usual for usual in (*_USUAL, *_USUAL_BESIDE)}
+_USUAL_BY_NAME = {si_name(stem, units[0]): _USUAL_OF[stem] for stem, units in _STEMS.items()}
 _ALWAYS_WITH_UNIT = tuple(split_unit(usual)[0] for usual in _USUAL)
+
+
+def usual_column(name: str) -> str:
+    """Return how a register usually heads a number: `diameter_mm` for `diameter_m`."""
+    return _USUAL_BY_NAME.get(name, name)
+
+
+def columns_of(name: str) -> tuple[str, ...]:
+    """Return every way to write the column of an SI name, a unit each, the usual one first."""
+    if name not in _USUAL_BY_NAME:
+        return (name,)
+    usual = usual_column(name)
+    stem, _ = split_unit(usual)
+    others = (
+        f"{stem}_{unit}"
+        for unit, (si, _, _) in UNITS.items()
+        if si == _STEMS[stem][0] and unit != "m" and unit.replace("_", "").isalnum()
+    )
+    return tuple(dict.fromkeys((usual, *others)))
 
 
 def numeric_columns(
