@@ -162,6 +162,19 @@ def refusal(
     )
 
 
+def excluded(specimen: str, reason: str = "torn at the grip", **changes: Any) -> Excluded:
+    fields: dict[str, Any] = {
+        "campaign": "soft-2026",
+        "technique": "compression",
+        "specimen": specimen,
+        "reason": reason,
+        "material": "gel-a",
+        "register": "soft-2026/compression/specimens.csv",
+        "register_line": 9,
+    }
+    return Excluded(**{**fields, **changes})
+
+
 def card(**changes: Any) -> MaterialCard:
     fields: dict[str, Any] = {
         "material": "gel-a",

@@ -8,7 +8,15 @@ import pytest
 from deamat.core.records import Flag
 from deamat.materials.card import MaterialCard
 from deamat.materials.present import card_text, law_text
-from tests.materials.samples import CREDIT, TWIN, card, modulus, refusal, viscosity_law
+from tests.materials.samples import (
+    CREDIT,
+    TWIN,
+    card,
+    excluded,
+    modulus,
+    refusal,
+    viscosity_law,
+)
 
 
 def test_a_card_is_one_screen() -> None:
@@ -31,6 +39,17 @@ Flags
 
 Refused
   tensile_modulus: 2 samples in the window, 10 are needed (A1, A2)"""
+    )
+
+
+def test_what_was_left_out_ends_the_card_with_its_reason() -> None:
+    text = card_text(card(excluded=(excluded("A9"), excluded("A3", "bubbles"))))
+    assert text.endswith(
+        """
+
+Excluded
+  soft-2026/compression/A3: bubbles
+  soft-2026/compression/A9: torn at the grip"""
     )
 
 
@@ -104,6 +123,10 @@ def test_a_falling_law_reads_as_people_write_it() -> None:
         (
             "power-law-fluid", (100.0, 0.5, 0.4), {"parts": (2, 1), "rates": (0.027, 0.27)},
             "power-law-fluid, K q^(n - 1), K = 100 + 0.5 x, n = 0.4 [Pa.s]",
+        ),
+        (
+            "arrhenius", (3e-4, 24000.0), {},
+            "arrhenius, 0.0003 exp(E / (R x)), E = 2.4e+04 J/mol [Pa.s]",
         ),
     ],
 )  # fmt: skip

@@ -17,6 +17,7 @@ from tests.materials.samples import (
     PROVENANCE,
     TWIN,
     card,
+    excluded,
     modulus,
     origin,
     viscosity_law,
@@ -112,6 +113,34 @@ Specimens
 """
         + _MADE_BY_NO_STAGE
     )
+
+
+def test_what_was_left_out_of_a_value_stands_before_its_specimens(tmp_path: Path) -> None:
+    left_out = (
+        excluded("A8", path="soft-2026/compression/A8.csv"),
+        excluded("A9"),
+        excluded("A7", technique="tension"),
+        excluded("A6", campaign="soft-2025"),
+    )
+    with database(tmp_path, card(excluded=left_out)) as db:
+        text = trace(db, "gel-a", "compressive_modulus").text()
+        refused = trace(db, "gel-a", "tensile_modulus")
+    assert (
+        """
+
+Excluded
+  soft-2026, A8: torn at the grip
+    place  soft-2026/compression/A8.csv; soft-2026/compression/specimens.csv, line 9
+  soft-2026, A9: torn at the grip
+    place  soft-2026/compression/specimens.csv, line 9
+
+Specimens
+"""
+        in text
+    )
+    assert "A7" not in text
+    assert "A6" not in text
+    assert [one.specimen for one in refused.excluded] == ["A7"]
 
 
 def test_the_chain_of_a_law(db: Database) -> None:
