@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from deamat.core.arrays import FloatArray
+from benchmarks.campaign_forms import FORMS, Form
 
 # The cylinder of ASTM D575 at 12 mm/min, sampled at 100 Hz.
 DIAMETER_m = 28.6e-3
@@ -30,47 +29,6 @@ synthetic = true
 
 
 @dataclass(frozen=True, slots=True)
-class Form:
-    """How an instrument writes a curve, and what pandas must be told to read it.
-
-    Parameters
-    ----------
-    ending : of the file's name
-    render : time `[s]`, travel `[mm]` and load `[N]`, shape (n,) each, to the file's text
-    separator, decimal, skip : for `pandas.read_csv`
-    """
-
-    name: str
-    ending: str
-    render: Callable[[FloatArray, FloatArray, FloatArray], str]
-    separator: str
-    decimal: str
-    skip: int
-
-
-# Decimals as machines of this kind resolve: 10 ms, 0.1 um, 1 mN.
-def _mts(time_s: FloatArray, travel_mm: FloatArray, load_N: FloatArray) -> str:
-    rows = zip(time_s.tolist(), travel_mm.tolist(), load_N.tolist(), strict=True)
-    return "Time (s)\tCrosshead (mm)\tLoad (N)\r\n" + "".join(
-        f"{time:.2f}\t{travel:.4f}\t{load:.3f}\r\n".replace(".", ",") for time, travel, load in rows
-    )
-
-
-def _bluehill(time_s: FloatArray, travel_mm: FloatArray, load_N: FloatArray) -> str:
-    rows = zip(time_s.tolist(), travel_mm.tolist(), load_N.tolist(), strict=True)
-    return "Time,Extension,Load\r\n(s),(mm),(N)\r\n" + "".join(
-        f"{time:.2f},{travel:.4f},{load:.3f}\r\n" for time, travel, load in rows
-    )
-
-
-COLUMNS = ("time", "travel", "load")
-FORMS = (
-    Form("bluehill", "csv", _bluehill, ",", ".", 2),
-    Form("mts", "txt", _mts, "\t", ",", 1),
-)
-
-
-@dataclass(frozen=True, slots=True)
 class Curve:
     """One generated file and its true modulus."""
 
@@ -81,7 +39,7 @@ class Curve:
 
 
 def write_campaign(folder: Path, files: int, rows: int) -> list[Curve]:
-    """Write a campaign of linear compression curves, half of them in each form.
+    """Write a campaign of linear compression curves, in every form in turn.
 
     Parameters
     ----------
@@ -99,7 +57,7 @@ def write_campaign(folder: Path, files: int, rows: int) -> list[Curve]:
         load_N = modulus_Pa * AREA_m2 * strain + generator.normal(0.0, _FORCE_NOISE_N, rows)
         path = folder / "compression" / material / f"{i:04d}.{form.ending}"
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(form.render(time_s, 1e3 * SPEED_m_per_s * time_s, load_N), newline="")
+        path.write_bytes(form.render(time_s, 1e3 * SPEED_m_per_s * time_s, load_N))
         curves.append(Curve(path, material, form, modulus_Pa))
     _write_registers(folder, curves)
     return curves

@@ -1,7 +1,8 @@
 """How fast a curve is read and fitted with its uncertainty, beside what one would do otherwise.
 
-`python -m benchmarks.read_and_fit` generates files of three columns and lets six contenders work
-on them in turn: the project's own reader, stress-strain curve and slope ("ours", which answers what
+`python -m benchmarks.read_and_fit` generates files of three columns, of two forms by name, of plain
+tables and workbooks (which pandas reads with openpyxl), and lets six contenders work on them in
+turn: the project's own reader, stress-strain curve and slope ("ours", which answers what
 its rivals answer, and with an uncertainty that allows for autocorrelation); the same with the hash
 of the bytes, which no rival takes but every origin of a number needs; the whole technique on top
 (toe, budgets, flags); pandas with the textbook formula and its naive standard error; pandas with
@@ -27,8 +28,6 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.campaign import (
-    COLUMNS,
-    FORMS,
     AREA_m2,
     Curve,
     DIAMETER_m,
@@ -37,6 +36,7 @@ from benchmarks.campaign import (
     find_curves,
     write_campaign,
 )
+from benchmarks.campaign_forms import FORMS
 from benchmarks.reading_page import PAGE, write_reading_page
 from benchmarks.timing import (
     Row,
@@ -63,7 +63,6 @@ _WINDOW = 0.05
 _TOLERANCE = 0.01  # a contender that misses the truth by more has not done the work
 _FILES_A_PART = 25
 _REFERENCES = ("ours", "ours, hashed", "ours, whole technique", "read and hash")
-_TARGETS = {"pandas + OLS": 2.0, "pandas + lmfit": 10.0}
 _MEMORY_TARGET_MB = 250.0
 _NOTHING_TO_DO_TARGET_s = 0.15
 _DEAMAT = (sys.executable, "-c", "import sys; from deamat.cli import main; sys.exit(main())")
@@ -184,14 +183,20 @@ def _pandas_window() -> Callable[[Curve], tuple[FloatArray, FloatArray]]:
 
     def window(curve: Curve) -> tuple[FloatArray, FloatArray]:
         form = curve.form
-        frame = pd.read_csv(
-            curve.path,
-            sep=form.separator,
-            decimal=form.decimal,
-            skiprows=form.skip,
-            header=None,
-            names=COLUMNS,
-        )
+        if form.separator:
+            frame = pd.read_csv(
+                curve.path,
+                sep=form.separator,
+                decimal=form.decimal,
+                encoding=form.encoding,
+                skiprows=form.skip,
+                header=None,
+                names=form.columns,
+            )
+        else:
+            frame = pd.read_excel(
+                curve.path, engine="openpyxl", skiprows=form.skip, header=None, names=form.columns
+            )
         strain = frame["travel"].to_numpy() * 1e-3 / HEIGHT_m
         stress_Pa = frame["load"].to_numpy() / AREA_m2
         inside = strain <= _WINDOW
@@ -251,7 +256,7 @@ def compare(curves: Sequence[Curve], names: Sequence[str], rounds: int) -> list[
             for other in _REFERENCES:
                 known = other in seconds
                 row[f"times {other}"] = undisturbed[name] / undisturbed[other] if known else "-"
-            row["target"] = _TARGETS.get(name, "-")
+            row["target"] = form.targets.get(name, "-")
             row["worst error"] = errors[name]
             rows.append(row)
     return rows

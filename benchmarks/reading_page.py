@@ -12,7 +12,7 @@ from benchmarks.timing import Row
 from deamat.core.atomic import write_atomically
 
 PAGE = Path("docs/reading-speed.md")
-_PACKAGES = ("numpy", "pandas", "lmfit", "pysimdjson")
+_PACKAGES = ("numpy", "pandas", "openpyxl", "lmfit", "pysimdjson", "python-calamine")
 _HEAD = """\
 # Speed of reading and fitting whole files
 

@@ -39,14 +39,20 @@ _LONGEST_SPECIMEN = 120
 _SHOWN = 80  # characters of a bad cell
 
 
-SHEET = "sheet"  # the note that keeps the sheet of `file.xlsx#Sheet`
-_SHEET_OF = re.compile(r"(.+\.(?:xlsx|xlsm|ods))#(.+)", re.IGNORECASE)
+SHEET = "sheet"  # the note that keeps the place in a file: `file.xlsx#Sheet`, `file.csv#D:F`
+ENCODING = "encoding"  # the note that keeps the encoding of a file where its bytes leave it open
+_PLACE_OF = re.compile(r"(.+\.(?:xlsx|xlsm|ods))#(.+)|(.+)#([A-Z]{1,3}:[A-Z]{1,3})", re.IGNORECASE)
 
 
 def split_sheet(file: str) -> tuple[str, str]:
-    """Part `book.xlsx#Specimen 1` into the file and its sheet, empty where none is named."""
-    found = _SHEET_OF.fullmatch(file)
-    return (found[1], found[2].strip()) if found else (file, "")
+    """Part `book.xlsx#Specimen 1` into the file and the place in it, empty where none is named.
+
+    A place is a sheet of a workbook (`#Data`), columns (`#D:F`), or both (`#Data!D:F`).
+    """
+    found = _PLACE_OF.fullmatch(file)
+    if found is None:
+        return file, ""
+    return (found[1], found[2].strip()) if found[1] else (found[3], found[4].upper())
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,7 +19,8 @@ from deamat.core.units import UNITS, UnknownUnit, known, si_factor
 CONDITION_COLUMNS = ("age", "cure", "electrode")
 # Text columns of any technique that something reads.
 _TEXT = (
-    *("specimen", "material", "file", "format", "instrument", "operator", "cured_on", "tested_on"),
+    *("specimen", "material", "file", "format", "encoding", "instrument", "operator"),
+    *("cured_on", "tested_on"),
 )
 
 # How each number is usually written. The stem of the first ones always carries a unit:

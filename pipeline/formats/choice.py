@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from deamat.core.unit_spellings import unit_as_written
 from deamat.core.units import UnknownUnit, si_factor
+from deamat.formats.durations import clock_unit
 from deamat.formats.structure import Heading
 from deamat.formats.vocabulary import ASKED, Asked, meaning_among, plain_label, vocabulary
 
@@ -42,6 +43,7 @@ class Choice:
     needed, further : columns that must be whole, and those that are used if they are
     faults : why nothing complete was found; empty where it was
     labelled : how many columns have a label that the technique knows
+    twins : are several columns the same quantity?
     """
 
     heading: Heading
@@ -50,6 +52,12 @@ class Choice:
     further: tuple[Taken, ...]
     faults: tuple[str, ...]
     labelled: int
+    twins: bool = False
+
+    @property
+    def used(self) -> tuple[Taken, ...]:
+        """Every column that is used."""
+        return (*self.needed, *self.further)
 
     @property
     def by_label(self) -> bool:
@@ -89,7 +97,7 @@ def choose(heading: Heading, technique: str) -> Choice:
         if found is not None:
             return _complete(heading, technique, asked, need, {**known, **found}, labelled)
     faults = [*twins.values()] or _faults(columns, asked, known)
-    return Choice(heading, technique, (), (), tuple(dict.fromkeys(faults)), labelled)
+    return Choice(heading, technique, (), (), tuple(dict.fromkeys(faults)), labelled, bool(twins))
 
 
 def _column(label: str, written: str, asked: Asked) -> _Column:
@@ -98,6 +106,8 @@ def _column(label: str, written: str, asked: Asked) -> _Column:
     if not means and written and (function := meaning_among(whole, asked.quantities)):
         return _Column(whole, "", "", "", "", dict(function))  # `Tan(Delta)` has no unit
     wanted = {vocabulary()[name].unit for name in means}
+    if clock := clock_unit(written):
+        return _Column(label, written, clock, "s", "", means)
     try:
         unit = unit_as_written(written, next(iter(wanted)) if len(wanted) == 1 else "") or ""
     except UnknownUnit as error:
@@ -150,7 +160,8 @@ def _by_unit(
 
 def _taken(columns: Sequence[_Column], at: int, name: str, *, by_unit: bool = False) -> Taken:
     column = columns[at]
-    _, factor, offset = si_factor(column.unit or "1")
+    clock = clock_unit(column.unit)  # its times are read as seconds
+    _, factor, offset = si_factor("s" if clock else column.unit or "1")
     if name == "frequency_Hz" and column.si == "rad/s":
         factor *= _HERTZ_PER_RADIAN
     if name in _NEGATED and plain_label(column.label)[:1] in ("-", "\u2212"):

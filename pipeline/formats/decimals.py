@@ -11,6 +11,8 @@ _GROUPS_BY_COMMA = re.compile(r"[+-]?[1-9][0-9]{0,2}(?:,[0-9]{3})+(?:\.[0-9]*)?"
 _GROUPS_BY_POINT = re.compile(r"[+-]?[1-9][0-9]{0,2}(?:\.[0-9]{3})+,[0-9]*")
 _GROUPS_BY_SPACE = re.compile(r"[+-]?[0-9]{1,3}(?:[\u00a0\u202f' ][0-9]{3})+(?:[.,][0-9]*)?")
 _SPACES = re.compile(r"[\u00a0\u202f' ]")
+# what no comma between thousands can be: behind a leading zero, or before one or two digits
+_FRACTION = re.compile(rb"(?<![0-9])0[0-9]*,|,[0-9]{1,2}(?![0-9])|,[0-9]{4}")
 
 
 class Ambiguous(ValueError):
@@ -50,6 +52,13 @@ def decimal_mark(cells: Iterable[str]) -> str:
     if point and comma and doubtful:
         raise Ambiguous(doubtful)
     return "," if comma and not point else "."
+
+
+def sole_decimal_mark(block: bytes) -> str:
+    """Return the decimal mark of plain numbers, without commas between fields; empty if unsure."""
+    if b"," not in block:
+        return "."
+    return "," if b"." not in block and _FRACTION.search(block) else ""
 
 
 def number_text(cell: str, decimal: str) -> str:

@@ -27,6 +27,9 @@ _CHUNK = 1 << 20  # bytes parsed at a time: the parser's workspace is some ten t
 # parse while something that it parsed is still referred to.
 _PARSER = simdjson.Parser()
 _RETURN, _LINE = b"\r\n"
+_MINUS, _ZERO = b"-0"
+_FIELD_END = np.zeros(256, dtype=np.bool_)
+_FIELD_END[list(b",] \r")] = True
 _TAIL = 64  # bytes that are searched for blank lines at the end; more of them go the slow way
 
 
@@ -46,18 +49,13 @@ def read_block(file: RawFile, first: int, columns: int, dialect: Dialect) -> Flo
     ------
     RawFileError : no rows, or anything in them that is not a number for certain
     """
-    start, end = file.offset(first), len(file.body)
-    tail = file.body[max(start, end - _TAIL) :]
-    ending = tail[len(tail.rstrip(b" \r\n")) :]
-    rows = file.body[start : end - len(ending)]
-    ended = file.ends_open or ending.endswith(b"\n")
-    lone_return = b"\r" in ending.replace(b"\r\n", b"\n")
-    if dialect.segmented:
+    rows = rows_from(file, first)
+    if rows is not None and dialect.segmented:
         rows = _BLANK_LINES.sub(b"\n", rows)
-    table = parse(rows, columns, dialect) if rows and ended and not lone_return else None
+    table = parse(rows, columns, dialect) if rows else None
     if table is not None:
         return table
-    text = file.body[start:].replace(b"\r\n", b"\n").rstrip(b" \n").decode()
+    text = file.body[file.offset(first) :].replace(b"\r\n", b"\n").rstrip(b" \n").decode()
     if not text:
         raise RawFileError(
             file.path,
@@ -65,7 +63,19 @@ def read_block(file: RawFile, first: int, columns: int, dialect: Dialect) -> Flo
             line=first,
             hint="export the file again",
         )
+    ended = file.ends_open or file.body.endswith(b"\n")
     return read_cells(file, text, first + 1, columns, dialect, ended=ended)
+
+
+def rows_from(file: RawFile, first: int) -> bytes | None:
+    """Return the bytes from line `first` on, without their last line end, or None if it is odd."""
+    start, end = file.offset(first), len(file.body)
+    tail = file.body[max(start, end - _TAIL) :]
+    ending = tail[len(tail.rstrip(b" \r\n")) :]
+    ended = file.ends_open or ending.endswith(b"\n")
+    if not ended or b"\r" in ending.replace(b"\r\n", b"\n"):
+        return None
+    return file.body[start : end - len(ending)]
 
 
 def row_lines(file: RawFile, first: int, rows: int, dialect: Dialect) -> Sequence[int]:
@@ -165,4 +175,7 @@ def _within_range(values: FloatArray) -> bool:
 
 def _has_integer_minus_zero(text: bytes) -> bool:
     """Look for a field `-0`, which JSON reads as an integer, without its sign."""
-    return any(b"-0" + end in text for end in (b",", b"]", b" ", b"\r"))
+    characters = np.frombuffer(text, dtype=np.uint8)
+    minus = np.flatnonzero(characters[:-2] == _MINUS)
+    zero = minus[characters[minus + 1] == _ZERO]
+    return bool(_FIELD_END[characters[zero + 2]].any())

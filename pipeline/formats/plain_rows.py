@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Sequence
+import csv
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,16 +15,33 @@ from deamat.core.recording import Recording, Source
 from deamat.core.records import Flag
 from deamat.formats.cells import OVER_RANGE, Dialect, looks_numeric, text_row, why_not
 from deamat.formats.choice import Choice, Taken
-from deamat.formats.decimals import Ambiguous, decimal_mark, normal, number_text
+from deamat.formats.decimals import Ambiguous, decimal_mark, normal, number_text, sole_decimal_mark
+from deamat.formats.durations import clock_unit, is_clock, is_date, seconds_text
 from deamat.formats.header import notes
 from deamat.formats.numbers import parse
 from deamat.formats.rawfile import RawFile
 from deamat.formats.structure import fields
 from deamat.formats.table import row_flags
 
-# what no comma between thousands can be: behind a leading zero, or before one or two digits
-_FRACTION = re.compile(r"(?<![0-9])0[0-9]*,|,[0-9]{1,2}(?![0-9])|,[0-9]{4}")
+_OF_THE_DAY_s = 3600.0  # an elapsed time starts earlier
 _ONE_RATE = 1.05  # rates that differ by less are one setting
+
+
+@dataclass(frozen=True, slots=True)
+class Rows:
+    """The numbers below a heading, as written.
+
+    Parameters
+    ----------
+    values : by quantity, shape (rows,) each
+    dropped : label of each column that may be left out and was, and why
+    first, last : lines of the first and the last row, counted from 1
+    """
+
+    values: Mapping[str, FloatArray]
+    dropped: Mapping[str, str]
+    first: int
+    last: int
 
 
 def recording_of(
@@ -40,10 +58,7 @@ def recording_of(
     ------
     RawFileError : no rows, rows of another length, or a cell of a needed column that is no number
     """
-    first, last = choice.heading.first, len(lines)
-    empty = choice.heading.separator + " \t"
-    while last > first and not lines[last - 1].strip(empty):
-        last -= 1
+    first, last = choice.heading.first, _end(lines, choice, file.columns)
     if last <= first:
         raise RawFileError(
             file.path, "no data rows: the file ends with its header", len(lines) - (not lines[-1]),
@@ -57,27 +72,61 @@ def recording_of(
             hint="export the file again; if this exporter never writes a final line end, "
             "set `ends_open = true` in campaign.toml",
         )  # fmt: skip
-    used = [taken for taken in (*choice.needed, *choice.further) if taken.name in values]
-    table = np.column_stack([values[taken.name] for taken in used])
-    names = tuple(taken.name for taken in used)
-    columns = {t.name: t.factor * values[t.name] + t.offset for t in used}
-    _insist_on_frequencies(file, columns, choice)
-    flags = (*_flags(used, dropped), *row_flags(table, names, range(first + 1, last + 1)))
-    rest = [
-        label
-        for at, label in enumerate(choice.heading.labels)
-        if label and at not in {taken.column for taken in used}
-    ]
     metadata = notes(lines[: choice.heading.names], choice.heading.separator)
-    if rest:
-        metadata = {**metadata, "columns not used": ", ".join(rest)}
+    rows = Rows(values, dropped, first + 1, last)
+    return recording_from(file, choice, rows, encoding, metadata)
+
+
+def _end(lines: Sequence[str], choice: Choice, columns: range | None) -> int:
+    """Count the lines down to the last row, of the columns that the register names."""
+    separator, last = choice.heading.separator, len(lines)
+    empty = separator + " \t"
+    while last > choice.heading.first:
+        line = lines[last - 1]
+        if columns is not None:
+            line = "".join(fields(line, separator)[columns.start : columns.stop])
+        if line.strip(empty):
+            break
+        last -= 1
+    return last
+
+
+def recording_from(
+    file: RawFile, choice: Choice, rows: Rows, encoding: str, metadata: Mapping[str, str]
+) -> Recording:
+    """Convert rows to SI, and say which columns were left out.
+
+    Parameters
+    ----------
+    metadata : what stands above the labels
+
+    Raises
+    ------
+    RawFileError : a frequency that is not above zero
+    """
+    used = [taken for taken in choice.used if taken.name in rows.values]
+    columns = {t.name: t.factor * rows.values[t.name] + t.offset for t in used}
+    _insist_on_frequencies(file, columns, choice)
+    left = [*choice.heading.labels]
+    for taken in used:
+        left[taken.column] = ""
+    rest = ", ".join(label for label in left if label)
     return Recording(
         _for_viscosity(columns) if choice.technique == "viscosity" else columns,
-        metadata,
+        {**metadata, "columns not used": rest} if rest else metadata,
         {taken.label: taken.unit for taken in used},
-        Source(file.path, file.sha256, first + 1, last, encoding, "plain"),
-        tuple(flags),
+        Source(file.path, file.sha256, rows.first, rows.last, encoding, "plain"),
+        (*_flags(used, rows.dropped), *_row_flags(rows)),
     )
+
+
+def _row_flags(rows: Rows) -> tuple[Flag, ...]:
+    names = tuple(rows.values)
+    lead = rows.values["time_s" if "time_s" in names else names[0]]
+    if (lead[1:] > lead[:-1]).all():  # nearly every recording rises, so it repeats no row
+        return ()
+    table = np.column_stack(list(rows.values.values()))
+    return row_flags(table, names, range(rows.first, rows.last + 1))
 
 
 def _insist_on_frequencies(file: RawFile, columns: dict[str, FloatArray], choice: Choice) -> None:
@@ -95,13 +144,13 @@ def _values(
     file: RawFile, lines: Sequence[str], choice: Choice
 ) -> tuple[dict[str, FloatArray], dict[str, str]]:
     """Read the columns that are used; of those that may be dropped, say why they were."""
-    used = [*choice.needed, *choice.further]
     rows = lines[choice.heading.first :]
-    fast = _fast(rows, choice)
-    if fast is not None:
-        return {taken.name: fast[:, taken.column] for taken in used}, {}
+    columns = _columns_of(rows, choice.heading.separator)
+    quick = None if columns is None else _quick(columns, choice)
+    if quick is not None:
+        return quick
     split = _split(file, rows, choice, lines[: choice.heading.first])
-    cells = {t.name: [normal(row[t.column]) for row in split] for t in used}
+    cells = {t.name: [normal(row[t.column]) for row in split] for t in choice.used}
     try:
         decimal = decimal_mark(cell for t in choice.needed for cell in cells[t.name])
     except Ambiguous as error:
@@ -113,8 +162,8 @@ def _values(
             hint="export with decimal points and without thousands separators",
         ) from error  # fmt: skip
     values, dropped = {}, {}
-    for taken in used:
-        column, fault = _column(cells[taken.name], decimal)
+    for taken in choice.used:
+        column, fault = _column(cells[taken.name], decimal, taken.unit)
         if column is not None:
             values[taken.name] = column
             continue
@@ -127,19 +176,38 @@ def _values(
     return values, dropped
 
 
-def _fast(rows: Sequence[str], choice: Choice) -> FloatArray | None:
-    """Read rows of nothing but plain numbers, or None where that is not certain."""
-    block = "\n".join(rows)
-    separator = choice.heading.separator
-    width = rows[0].count(separator) + 1
-    if not block.isascii() or width != len(choice.heading.labels) or separator == "|":
+def _columns_of(rows: Sequence[str], separator: str) -> list[tuple[str, ...]] | None:
+    """Turn rows of one length into columns, or return None where anything is odd."""
+    try:
+        split = list(csv.reader(rows, delimiter=separator, skipinitialspace=True, strict=True))
+        return list(zip(*split, strict=True)) if len(split) == len(rows) else None
+    except (csv.Error, ValueError):
         return None
-    decimal = "."
-    if separator != "," and "," in block:
-        if "." in block or not _FRACTION.search(block):
+
+
+def _quick(
+    columns: Sequence[tuple[str, ...]], choice: Choice
+) -> tuple[dict[str, FloatArray], dict[str, str]] | None:
+    """Read the columns that are used, if all cells of the needed ones are plain numbers."""
+    blocks = {t.name: "\n".join(columns[t.column]).encode() for t in choice.used}
+    decimal = sole_decimal_mark(b"\n".join(blocks[t.name] for t in choice.needed))
+    if not decimal:
+        return None
+    values, dropped = {}, {}
+    for taken in choice.used:
+        column = parse(blocks[taken.name], 1, Dialect("\t", decimal))
+        if column is not None:
+            values[taken.name] = column[:, 0]
+        elif taken in choice.needed:
             return None
-        decimal = ","
-    return parse(block.encode(), width, Dialect(separator, decimal))
+        else:
+            cells = [normal(cell.strip()) for cell in columns[taken.column]]
+            slow, (at, _, reason, _) = _column(cells, decimal, taken.unit)
+            if slow is not None:
+                values[taken.name] = slow
+            else:
+                dropped[taken.label] = f"line {choice.heading.first + 1 + at}: {reason}"
+    return values, dropped
 
 
 def _split(
@@ -175,22 +243,36 @@ def _split(
 
 
 def _column(
-    cells: Sequence[str], decimal: str
+    cells: Sequence[str], decimal: str, unit: str
 ) -> tuple[FloatArray | None, tuple[int, str, str, str]]:
     """Read the cells of one column, or say which one is no number and why."""
     values = np.empty(len(cells))
+    clock = clock_unit(unit)
     for at, cell in enumerate(cells):
-        text = number_text(cell, decimal)
+        text = seconds_text(cell, clock) if clock else number_text(cell, decimal)
         if not is_number(text) or not abs(float(text)) < OVER_RANGE:
-            reason, hint = why_not(cell, Dialect("\t", decimal)) or (
-                "not a number", "export the file again, or correct the export settings"
-            )  # fmt: skip
-            return None, (at, cell, reason, hint)
+            return None, (at, cell, *_why(cell, decimal))
         values[at] = float(text)
+    if clock and values[0] >= _OF_THE_DAY_s:
+        return None, (0, cells[0], "it may be a time of the day or an elapsed time",
+                      "export elapsed times, in seconds")  # fmt: skip
     return values, (0, "", "", "")
 
 
-def _flags(used: Sequence[Taken], dropped: dict[str, str]) -> list[Flag]:
+def _why(cell: str, decimal: str) -> tuple[str, str]:
+    if is_clock(cell):
+        return (
+            "a time as a clock shows it, under a unit",
+            "write h:mm:ss over the column, or export seconds",
+        )
+    if is_date(cell):
+        return "a date where a number belongs", "export elapsed times, in seconds"
+    return why_not(cell, Dialect("\t", decimal)) or (
+        "not a number", "export the file again, or correct the export settings"
+    )  # fmt: skip
+
+
+def _flags(used: Sequence[Taken], dropped: Mapping[str, str]) -> list[Flag]:
     flags = [
         Flag(
             "label-by-unit",

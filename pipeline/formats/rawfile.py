@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import codecs
 import hashlib
+import re
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -19,7 +20,16 @@ _MANY_BYTES, _FEW_BYTES = 16384, 2048
 ROW_STARTS = frozenset("0123456789+-.")
 _NUMBERS = b"0123456789+-"  # a letter among the numbers, such as of an exponent, is no plain number
 _ROW = _NUMBERS + b".,;\t "
+# what the register's `encoding` may say, and what Python calls it
+_DECLARED = {
+    "utf-8": "utf-8", "utf-16": "utf-16", "utf-16-le": "utf-16-le", "utf-16-be": "utf-16-be",
+    "cp1252": "cp1252", "windows-1252": "cp1252", "cp1250": "cp1250", "windows-1250": "cp1250",
+    "gb18030": "gb18030", "gbk": "gb18030", "gb2312": "gb18030", "cp932": "cp932",
+    "shift-jis": "cp932", "latin-1": "cp1252", "iso-8859-1": "cp1252", "iso-8859-2": "iso-8859-2",
+}  # fmt: skip
 _HEADERS = 16  # a campaign has a few exporters, each of them with a header or two
+
+COLUMNS = re.compile(r"([A-Z]{1,3}):([A-Z]{1,3})")
 
 Answer = TypeVar("Answer")
 Details = ParamSpec("Details")
@@ -91,6 +101,58 @@ def read_raw(raw: Path, path: str) -> bytes:
         raise RawFileError(path, f"it cannot be read: {error.strerror}") from error
 
 
+def column_number(letters: str) -> int:
+    """Return the number of a column that a spreadsheet names by letters, counted from 0."""
+    number = 0
+    for letter in letters:
+        number = 26 * number + ord(letter) - ord("A") + 1
+    return number - 1
+
+
+def column_letters(number: int) -> str:
+    """Return the letters by which a spreadsheet names a column, counted from 0."""
+    letters = ""
+    while number >= 0:
+        number, letter = divmod(number, 26)
+        letters = chr(ord("A") + letter) + letters
+        number -= 1
+    return letters
+
+
+def _as_found(path: str, data: bytes) -> tuple[bytes, str]:
+    """Decode what the bytes themselves declare; `latin-1` where they declare nothing."""
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        try:
+            return data.decode("utf-16").encode(), "utf-16"
+        except UnicodeDecodeError as error:
+            raise RawFileError(
+                path, f"starts as UTF-16 but breaks at byte {error.start}", hint="export it again"
+            ) from error
+    if data.startswith(codecs.BOM_UTF8):
+        body, encoding = data[3:], "utf-8-sig"
+    else:
+        body, encoding = data, "utf-8"
+    if b"\0" in data[:_FEW_BYTES] and (found := _wide(data)) is not None:
+        return found
+    if not body.isascii():
+        try:
+            body.decode("utf-8")
+        except UnicodeDecodeError:
+            body, encoding = body.decode("latin-1").encode(), "latin-1"
+    return body, encoding
+
+
+def _wide(data: bytes) -> tuple[bytes, str] | None:
+    """Decode UTF-16 without its mark: of most characters one byte, always the same, is NUL."""
+    for at, encoding in ((1, "utf-16-le"), (0, "utf-16-be")):
+        if data[at::2].count(0) > len(data) // 4 > 16 * data[1 - at :: 2].count(0):
+            try:
+                return data.decode(encoding).encode(), encoding
+            except UnicodeDecodeError:
+                return None
+    return None
+
+
 # Header, separators of the rows below, the byte at which they end at the latest, and the head.
 _SEEN: deque[tuple[bytes, bytes, int, Head]] = deque(maxlen=_HEADERS)
 
@@ -106,14 +168,17 @@ class RawFile:
     ends_open : the campaign declares that this exporter writes no final line end
     technique : in whose register it is listed, empty where nobody says: plain tables are asked for
         the quantities of that technique
-    sheet : of a workbook, where the register names one
+    place : what the register names behind the `#` of its file: a sheet, columns, or both (`Data`,
+        `D:F`, `Data!D:F`)
+    declared : encoding that the register declares, empty where the bytes decide
     """
 
     path: str
     data: bytes
     ends_open: bool = False
     technique: str = ""
-    sheet: str = ""
+    place: str = ""
+    declared: str = ""
 
     @cached_property
     def sha256(self) -> str:
@@ -122,29 +187,7 @@ class RawFile:
 
     @cached_property
     def _decoded(self) -> tuple[bytes, str]:
-        data = self.data
-        if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-            try:
-                body, encoding = data.decode("utf-16").encode(), "utf-16"
-            except UnicodeDecodeError as error:
-                raise RawFileError(
-                    self.path,
-                    f"starts as UTF-16 but breaks at byte {error.start}",
-                    hint="export it again",
-                ) from error
-        elif data.startswith(codecs.BOM_UTF8):
-            body, encoding = data[3:], "utf-8-sig"
-        else:
-            body, encoding = data, "utf-8"
-        self._refuse_nul(body)
-        if not body.isascii():
-            try:
-                body.decode("utf-8")
-            except UnicodeDecodeError:
-                body, encoding = body.decode("latin-1").encode(), "latin-1"
-        return body, encoding
-
-    def _refuse_nul(self, body: bytes) -> None:
+        body, encoding = self._as_declared() if self.declared else _as_found(self.path, self.data)
         nul = body.find(b"\0")
         if nul >= 0:
             raise RawFileError(
@@ -152,13 +195,51 @@ class RawFile:
                 "a NUL byte in a text file",
                 line=body.count(b"\n", 0, nul) + 1,
                 value="\0",
-                hint="export the file again (UTF-16 text must start with its byte order mark)",
+                hint="export the file again as UTF-8 text",
             )
+        return body, encoding
+
+    def _as_declared(self) -> tuple[bytes, str]:
+        encoding = _DECLARED.get(self.declared.casefold().replace("_", "-"))
+        if encoding is None:
+            raise RawFileError(
+                self.path, f"the register declares an unknown encoding {self.declared!r}",
+                hint=f"write one of {', '.join(_DECLARED)}",
+            )  # fmt: skip
+        try:
+            return self.data.decode(encoding).removeprefix("\ufeff").encode(), encoding
+        except UnicodeDecodeError as error:
+            raise RawFileError(
+                self.path, f"it is not in {self.declared}, which the register declares: byte "
+                f"{error.start} is no letter there", hint="correct `encoding` in the register",
+            ) from error  # fmt: skip
 
     @property
     def body(self) -> bytes:
         """The text as UTF-8 bytes without a byte order mark."""
         return self._decoded[0]
+
+    @property
+    def sheet(self) -> str:
+        """Sheet of a workbook that the register names, empty where it names none."""
+        sheet, mark, _ = self.place.rpartition("!")
+        if not mark and not COLUMNS.fullmatch(self.place):
+            sheet = self.place
+        return sheet.strip("'")
+
+    @property
+    def columns(self) -> range | None:
+        """Columns that the register names, counted from 0; None for all."""
+        found = COLUMNS.fullmatch(self.place.rpartition("!")[2])
+        if found is None:
+            return None
+        first, last = map(column_number, found.groups())
+        return range(first, last + 1)
+
+    @property
+    def open_encoding(self) -> bool:
+        """Whether neither the bytes nor the register decide the encoding."""
+        return not self.declared and self.encoding == "latin-1"
 
     @property
     def encoding(self) -> str:

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 from deamat.core.errors import RawFileError
 from deamat.core.recording import Recording
-from deamat.formats.plain import Text, complete_in, refused
 from deamat.formats.plain_rows import recording_of
+from deamat.formats.plain_tables import Text, complete_in, refused
 from deamat.formats.rawfile import RawFile
 
 CUT = "the file seems cut"

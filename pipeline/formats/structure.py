@@ -10,12 +10,13 @@ import contextlib
 import csv
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from deamat.core.register_columns import split_unit
 from deamat.core.unit_spellings import unit_as_written
 from deamat.core.units import UnknownUnit
 from deamat.formats.cells import looks_numeric
+from deamat.formats.durations import CLOCK, is_clock, is_date
 
 SEPARATORS = ("\t", ";", ",", "|")
 _HEADER_LINES = 1000  # no results block above a table is longer
@@ -24,6 +25,7 @@ _TEXT = re.compile(r"[^0-9+\-.,;\t|\" eE]")  # what no row of plain numbers hold
 _BRACKETED = re.compile(r"\((.*)\)|\[(.*)\]|<(.*)>")
 _ENDING = re.compile(r"(.*\S)\s*(?:\(([^()]*)\)|\[([^\[\]]*)\]|<([^<>]*)>)")
 _SLASH = re.compile(r"(.*\S)\s+(?:/|in|,)\s*(\S+(?: s)?)")
+_GROUPED = re.compile(r"[+\-\u2212]?[0-9][0-9.,'\u00a0\u202f ]*")
 _WITHOUT = frozenset(("", "#", "-", "[]", "()", "n/a", "none"))
 
 
@@ -46,6 +48,16 @@ class Heading:
     labels: tuple[str, ...]
     units: tuple[str, ...]
 
+    def only(self, columns: range | None) -> Heading:
+        """Leave out what stands over the columns that the register does not name."""
+        if columns is None:
+            return self
+        labels, units = (
+            tuple(text if at in columns else "" for at, text in enumerate(texts))
+            for texts in (self.labels, self.units)
+        )
+        return replace(self, labels=labels, units=units)
+
 
 def fields(line: str, separator: str) -> list[str]:
     """Split a line into fields without blanks around them and without their quotes."""
@@ -62,18 +74,25 @@ def headings(lines: Sequence[str]) -> Iterator[Heading]:
     for separator in SEPARATORS:
         if separator not in head:
             continue
-        rows = 0
+        rows = alike = marks = 0
         for at, line in enumerate(lines[:_HEADER_LINES]):
             rows = 0 if _TEXT.search(line) else rows + 1
+            last, marks = marks, line.count(separator)
+            alike = alike + 1 if marks == last > 0 and _holds_numbers(line, separator) else 0
             if rows > _ROWS:
                 break
-            if rows or separator not in line:
+            if rows or alike > _ROWS or not marks:
                 continue
             names = _trimmed(fields(line, separator))
             if len([name for name in names if name]) < 2:
                 continue
             numbers = len([name for name in names if looks_numeric(name)])
             yield from _headings_at(lines, at, separator, names, numbers)
+
+
+def _holds_numbers(line: str, separator: str) -> bool:
+    """Say whether two fields of a line at least begin as numbers do."""
+    return len([field for field in line.split(separator) if field.strip(' "')[:1].isdigit()]) >= 2
 
 
 def _headings_at(
@@ -84,14 +103,27 @@ def _headings_at(
         if units is not None and numbers < len(names):
             first = _first_row(lines, below + 1, separator, len(names))
             if first is not None:
-                yield Heading(separator, at, first, *_with_units(names, units))
+                yield _clocked(lines, Heading(separator, at, first, *_with_units(names, units)))
     if numbers:
         return
     labels, written = zip(*map(split_label, names), strict=True)
     if all(names) or sum(map(bool, written)) > 1:  # a running number may have no label
         first = _first_row(lines, at + 1, separator, len(names))
         if first is not None:
-            yield Heading(separator, at, first, labels, written)
+            yield _clocked(lines, Heading(separator, at, first, labels, written))
+
+
+def _clocked(lines: Sequence[str], heading: Heading) -> Heading:
+    """Times of a clock say their own unit where none stands over them."""
+    row = lines[heading.first] if heading.first < len(lines) else ""
+    if ":" not in row:
+        return heading
+    cells = fields(row, heading.separator)
+    units = tuple(
+        CLOCK if not unit and is_clock(cell) else unit
+        for cell, unit in zip(cells, heading.units, strict=False)
+    )
+    return replace(heading, units=units + heading.units[len(units) :])
 
 
 def _trimmed(cells: list[str]) -> list[str]:
@@ -158,10 +190,8 @@ def _first_row(lines: Sequence[str], at: int, separator: str, columns: int) -> i
 
 
 def looks_numeric_grouped(cell: str) -> bool:
-    """Say whether a cell may be a number, perhaps with separators of thousands."""
-    return looks_numeric(cell) or bool(
-        re.fullmatch(r"[+\-\u2212]?[0-9][0-9.,'\u00a0\u202f ]*", cell)
-    )
+    """Say whether a cell may be a number, perhaps with thousands separators, or a time or date."""
+    return bool(looks_numeric(cell) or _GROUPED.fullmatch(cell) or is_clock(cell) or is_date(cell))
 
 
 def split_label(label: str) -> tuple[str, str]:

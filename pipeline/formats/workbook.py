@@ -6,10 +6,14 @@ Named `workbook`; detected by the bytes with which such an archive starts, and b
 
 Format
 ------
-Each sheet is read as a plain table (`plain`): a title and notes above, a row of labels, perhaps a
-row of units, then rows of numbers. The values that are stored count, not how they are shown. Of
-several sheets exactly one may hold such a table. Refused by name: a formula without its stored
-value, cells shown in percent (stored as fractions), dates and durations where a number belongs.
+Each sheet is read as a plain table (`plain`): a title, notes and results above, a row of labels,
+perhaps a row of units, then rows of numbers. The values that are stored count, not how they are
+shown: durations are in seconds, and cells shown in percent are fractions whatever stands above
+them. Of several sheets exactly one may hold such a table, or the register names it
+(`file.xlsx#Sheet`); where specimens stand side by side it names their columns
+(`file.xlsx#Sheet!A:C`). Refused by name: a formula without its stored value, a column of which
+some cells are shown in percent, dates where a number belongs. Rows that are hidden or filtered out
+are read, and a flag says so.
 
 Columns
 -------
@@ -21,50 +25,55 @@ None in the file.
 
 Metadata
 --------
-`sheet`; every row above the labels; `columns not used`.
+`sheet`; every row above the labels; `columns not used`. The source names sheet and cells
+(`Data!A3:C202`).
 """
 
 from __future__ import annotations
 
 import io
 import math
-import re
 import struct
 import zipfile
 import zlib
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from datetime import date, datetime, time, timedelta
+from functools import partial
+from xml.etree.ElementTree import ParseError
 
+import numpy as np
+
+from deamat.core.arrays import FloatArray
 from deamat.core.errors import RawFileError
 from deamat.core.recording import Recording
 from deamat.core.records import Flag
+from deamat.formats.cells import OVER_RANGE
 from deamat.formats.choice import Choice
+from deamat.formats.durations import as_clock
 from deamat.formats.format import Format
-from deamat.formats.plain import Text, complete_in, refused
-from deamat.formats.plain_rows import recording_of
-from deamat.formats.rawfile import RawFile
+from deamat.formats.header import notes
+from deamat.formats.plain_rows import Rows, recording_from, recording_of
+from deamat.formats.plain_tables import Text, complete_among, refused
+from deamat.formats.rawfile import RawFile, column_letters
+from deamat.formats.structure import Heading, headings
+from deamat.formats.workbook_audit import Marks, marks_of
 
 ARCHIVE = b"PK\x03\x04"
-_SHEETS = re.compile(rb"<sheet\b[^>]*?/>|<sheet\b[^>]*>")
-_CELL = re.compile(
-    rb'<c r="([A-Z]+[0-9]+)"[^>]*>\s*<f\b(?:[^>]*/>|.*?</f>)\s*(?:</c>|<v\s*/>|<v></v>)'
-)
-_HIDDEN = re.compile(rb'<row\b[^>]*\bhidden="(?:1|true)"')
-_STYLED = re.compile(rb'<c r="([A-Z]+[0-9]+)" s="([0-9]+)"')
-_PERCENT = re.compile(rb'<numFmt\b[^>]*numFmtId="([0-9]+)"[^>]*formatCode="[^"]*%[^"]*"')
-_FORMATS = re.compile(rb'<xf\b[^>]*?numFmtId="([0-9]+)"')
 _LARGEST = 1 << 29  # bytes of an archive unpacked
+_HEAD = 1000  # rows in which labels are looked for at most
+_ROWS = 40  # of numbers in a row are the table
 _AGAIN = "open it in the spreadsheet program, save it, and register the saved file"
 
 # What zipfile raises on a damaged archive: NotImplementedError for a compression method that a
 # flipped byte names, RuntimeError for a part that it marks as encrypted.
 _DAMAGED = (
     zipfile.BadZipFile, zlib.error, struct.error, NotImplementedError, RuntimeError, OSError,
-    EOFError, ValueError,
+    EOFError, ValueError, ParseError, KeyError,
 )  # fmt: skip
 
 Cell = str | float | int | bool | date | datetime | time | timedelta
+Cells = Sequence[Sequence[Cell]]
 
 
 def is_workbook(data: bytes) -> bool:
@@ -80,48 +89,42 @@ def is_workbook(data: bytes) -> bool:
 
 
 def _read(file: RawFile) -> Recording:
-    found: list[tuple[str, Text, Choice]] = []
-    nearest: Choice | None = None
-    sheets = dict(_sheets(file))
-    if file.sheet and file.sheet not in sheets:
+    found: list[tuple[str, Cells, Marks, Choice]] = []
+    nearest: tuple[str, Choice] | None = None
+    sheets = _sheets(file)
+    if file.sheet and file.sheet not in [name for name, _, _ in sheets]:
         raise RawFileError(
             file.path, f"an Excel workbook without a sheet {file.sheet!r}; it has "
-            f"{', '.join(sheets)}", hint="name one of them behind the # in the register",
+            f"{', '.join(name for name, _, _ in sheets)}",
+            hint="name one of them behind the # in the register",
         )  # fmt: skip
-    for name, rows in sheets.items():
-        if file.sheet not in ("", name):
-            continue
-        text = Text([_line(row) for row in rows], "utf-8", ended=True)
-        choice, near = complete_in(file, text)
-        if choice is not None:
-            found.append((name, text, choice))
-        if near is not None and (nearest is None or near.labelled > nearest.labelled):
-            nearest = near
+    for name, rows, marks in sheets:
+        if file.sheet in ("", name):
+            choice, near = _choice(file, _head(rows), marks)
+            if choice is not None:
+                found.append((name, rows, marks, choice))
+            if near is not None and (nearest is None or near.labelled > nearest[1].labelled):
+                nearest = name, near
     if not found:
-        error = refused(file, nearest)
-        raise RawFileError(
-            file.path, f"an Excel workbook: {error.reason}", error.line,
-            hint="one sheet must hold a row of labels with their units, and numbers below",
-        )  # fmt: skip
+        raise _refused(file, nearest)
     if len(found) > 1:
-        names = ", ".join(name for name, _, _ in found)
+        names = ", ".join(name for name, *_ in found)
         raise RawFileError(
             file.path, f"an Excel workbook with several tables: sheets {names}",
             hint=f"name the sheet in the register: `{file.path.rpartition('/')[2]}#{found[0][0]}`",
         )  # fmt: skip
-    name, text, choice = found[0]
-    recording = recording_of(file, text.lines, text.encoding, choice, ended=True)
-    hidden = _audit(file, name)
-    flags = recording.flags
-    if hidden:
-        flags += (Flag("hidden-rows", f"{hidden} rows of sheet {name} are hidden; all were read"),)
-    source = replace(recording.source, reader=f"workbook, sheet {name}")
-    return replace(
-        recording, metadata={"sheet": name, **recording.metadata}, flags=flags, source=source
-    )
+    return _recording(file, *found[0])
 
 
-def _sheets(file: RawFile) -> list[tuple[str, Sequence[Sequence[Cell]]]]:
+def _refused(file: RawFile, nearest: tuple[str, Choice] | None) -> RawFileError:
+    error = refused(file, nearest[1] if nearest else None)
+    hint = error.hint or "one sheet must hold a row of labels with their units, and numbers below"
+    if nearest and not file.sheet:
+        hint = hint.replace("#", f"#{nearest[0]}!")
+    return RawFileError(file.path, f"an Excel workbook: {error.reason}", error.line, hint=hint)
+
+
+def _sheets(file: RawFile) -> list[tuple[str, Cells, Marks]]:
     """Read every sheet of numbers and texts, from its first row and column on."""
     from python_calamine import CalamineError, CalamineWorkbook, ZipError
 
@@ -129,92 +132,149 @@ def _sheets(file: RawFile) -> list[tuple[str, Sequence[Sequence[Cell]]]]:
         with zipfile.ZipFile(io.BytesIO(file.data)) as archive:
             if math.fsum(part.file_size for part in archive.infolist()) > _LARGEST:
                 raise RawFileError(file.path, "a workbook too large to unpack")
-            damaged = archive.testzip()
-            if damaged is not None:
-                raise RawFileError(file.path, f"a damaged workbook: {damaged}", hint=_AGAIN)
-        book = CalamineWorkbook.from_filelike(io.BytesIO(file.data))
-        return [
-            (name, book.get_sheet_by_name(name).to_python(skip_empty_area=False))
-            for name in book.sheet_names
-        ]
+            book = CalamineWorkbook.from_filelike(io.BytesIO(file.data))
+            return [
+                (
+                    name,
+                    book.get_sheet_by_name(name).to_python(skip_empty_area=False),
+                    marks_of(archive, name),
+                )
+                for name in book.sheet_names
+            ]
     except (CalamineError, ZipError, *_DAMAGED) as error:
         raise RawFileError(
             file.path, f"a workbook that cannot be read: {error}", hint=_AGAIN
         ) from error
 
 
+def _head(rows: Cells) -> list[str]:
+    """Write the rows down to the first of a table as lines of fields parted by tabs."""
+    lines, numbers = [], 0
+    for row in rows[:_HEAD]:
+        lines.append(_line(row))
+        plain = [cell for cell in row if cell != ""]
+        numbers = numbers + 1 if len(plain) > 1 and set(map(type, plain)) <= _NUMBER else 0
+        if numbers > _ROWS:
+            break
+    return lines
+
+
+_NUMBER = {float, int}
+
+
 def _line(row: Sequence[Cell]) -> str:
-    """Write a row of cells as a line of fields parted by tabs."""
     return "\t".join(map(_field, row))
 
 
 def _field(cell: Cell) -> str:
+    if isinstance(cell, str):
+        return " ".join(cell.replace('"', "''").split())
     if isinstance(cell, bool):
         return str(cell).upper()
+    if isinstance(cell, datetime | time | timedelta):
+        return as_clock(cell)
     if isinstance(cell, float) and cell.is_integer() and abs(cell) < 1e15:
         return str(int(cell))
-    return " ".join(str(cell).replace('"', "''").split())
+    return str(cell)
 
 
-def _audit(file: RawFile, name: str) -> int:
-    """Refuse formulas without a value and cells in percent; return how many rows are hidden."""
-    with zipfile.ZipFile(io.BytesIO(file.data)) as archive:
-        part = _part(archive, name)
-        if part is None:
-            return 0
-        xml = archive.read(part)
-        formula = _CELL.search(xml)
-        if formula is not None:
-            raise RawFileError(
-                file.path, f"sheet {name}: the formula in cell {formula[1].decode()} has no "
-                "stored value", hint=_AGAIN,
-            )  # fmt: skip
-        percent = _percent_styles(archive)
-        for cell, style in _STYLED.findall(xml) if percent else ():
-            if int(style) in percent:
-                raise RawFileError(
-                    file.path, f"sheet {name}: cell {cell.decode()} is shown in percent and "
-                    "stored as a fraction", hint="show the cells as numbers, with their unit above",
-                )  # fmt: skip
-        return len(_HIDDEN.findall(xml))
+def _choice(
+    file: RawFile, lines: Sequence[str], marks: Marks
+) -> tuple[Choice | None, Choice | None]:
+    """Choose the table; what is shown in percent is a fraction, whatever stands above it."""
+    text = Text(lines, "utf-8", ended=True)
+    return complete_among(file, text, map(partial(_fractions, marks), headings(lines)))
 
 
-def _part(archive: zipfile.ZipFile, name: str) -> str | None:
-    """Name the part of an .xlsx archive that holds a sheet: they are numbered in their order."""
-    names = archive.namelist()
-    if "xl/workbook.xml" not in names:
-        return None
-    sheets = _SHEETS.findall(archive.read("xl/workbook.xml"))
-    relations = archive.read("xl/_rels/workbook.xml.rels").decode("utf-8", "replace")
-    for sheet in sheets:
-        text = sheet.decode("utf-8", "replace")
-        said = re.search(r'\bname="([^"]*)"', text)
-        link = re.search(r'\br:id="([^"]*)"', text)
-        if said is None or link is None or _unescaped(said[1]) != name:
-            continue
-        for relation in re.findall(r"<Relationship\b[^>]*>", relations):
-            target = re.search(r'\bTarget="/?(?:xl/)?([^"]*)"', relation)
-            if f'Id="{link[1]}"' in relation and target and f"xl/{target[1]}" in names:
-                return f"xl/{target[1]}"
-    return None
-
-
-def _unescaped(text: str) -> str:
-    for name, mark in (("&lt;", "<"), ("&gt;", ">"), ("&quot;", '"'), ("&apos;", "'")):
-        text = text.replace(name, mark)
-    return text.replace("&amp;", "&")
-
-
-def _percent_styles(archive: zipfile.ZipFile) -> frozenset[int]:
-    """Number the cell styles that show a fraction in percent."""
-    if "xl/styles.xml" not in archive.namelist():
-        return frozenset()
-    xml = archive.read("xl/styles.xml")
-    percent = {9, 10} | {int(number) for number in _PERCENT.findall(xml)}
-    cells = xml.partition(b"<cellXfs")[2].partition(b"</cellXfs>")[0]
-    return frozenset(
-        at for at, number in enumerate(_FORMATS.findall(cells)) if int(number) in percent
+def _fractions(marks: Marks, heading: Heading) -> Heading:
+    units = tuple(
+        "1" if unit in ("", "%") and (heading.first, at) in marks.percent else unit
+        for at, unit in enumerate(heading.units)
     )
+    return replace(heading, units=units)
+
+
+def _recording(file: RawFile, name: str, rows: Cells, marks: Marks, choice: Choice) -> Recording:
+    recording = _quick(file, rows, choice)
+    if recording is None:
+        lines = [_line(row) for row in rows]
+        again, near = _choice(file, lines, marks)
+        if again is None:
+            raise _refused(file, None if near is None else (name, near))
+        choice = again
+        _insist_on_values(file, name, marks, choice, len(rows))
+        recording = recording_of(file, lines, "utf-8", choice, ended=True)
+    first, last = recording.source.first_line, recording.source.last_line
+    _insist_on_values(file, name, marks, choice, last)
+    used = [taken.column for taken in choice.used if taken.name in recording.columns]
+    cells = f"{column_letters(min(used))}{first}:{column_letters(max(used))}{last}"
+    return replace(
+        recording,
+        metadata={"sheet": name, **recording.metadata},
+        flags=recording.flags + _hidden(name, marks, range(first - 1, last)),
+        source=replace(recording.source, reader=f"workbook, {name}!{cells}"),
+    )
+
+
+def _quick(file: RawFile, rows: Cells, choice: Choice) -> Recording | None:
+    """Read columns that hold numbers alone, or return None where that is not certain."""
+    first, last = choice.heading.first, len(rows)
+    within = file.columns or range(len(rows[0]) if rows else 0)
+    while last > first and not any(c != "" for c in rows[last - 1][within.start : within.stop]):
+        last -= 1
+    values = {}
+    for taken in choice.used if last > first else ():
+        column = _numbers([row[taken.column] for row in rows[first:last]])
+        if column is None:
+            return None
+        values[taken.name] = column
+    if not values:
+        return None
+    above = notes([_line(row) for row in rows[: choice.heading.names]], "\t")
+    return recording_from(file, choice, Rows(values, {}, first + 1, last), "utf-8", above)
+
+
+def _numbers(cells: Sequence[Cell]) -> FloatArray | None:
+    if not set(map(type, cells)) <= _NUMBER:
+        return None
+    values = np.array(cells, dtype=np.float64)
+    return values if np.abs(values).max() < OVER_RANGE else None
+
+
+def _insist_on_values(file: RawFile, name: str, marks: Marks, choice: Choice, last: int) -> None:
+    """Refuse formulas without a value, and columns of which some cells are shown in percent."""
+    rows = range(choice.heading.first, last)
+    for taken in choice.used:
+        blank = _first(marks.unsaved, rows, taken.column)
+        if blank is not None:
+            raise RawFileError(
+                file.path, f"sheet {name}: the formula in cell "
+                f"{column_letters(taken.column)}{blank + 1} has no stored value", blank + 1,
+                taken.column + 1, hint=_AGAIN,
+            )  # fmt: skip
+        shown = _first(marks.percent, rows, taken.column)
+        if shown is not None and (taken.unit != "1" or not _all(marks, rows, taken.column)):
+            raise RawFileError(
+                file.path, f"sheet {name}: cell {column_letters(taken.column)}{shown + 1} is shown "
+                "in percent and stored as a fraction", shown + 1, taken.column + 1,
+                hint="show the cells as numbers, with their unit above",
+            )  # fmt: skip
+
+
+def _first(places: Iterable[tuple[int, int]], rows: range, column: int) -> int | None:
+    return min((row for row, at in places if at == column and row in rows), default=None)
+
+
+def _all(marks: Marks, rows: range, column: int) -> bool:
+    return all((row, column) in marks.percent for row in rows)
+
+
+def _hidden(name: str, marks: Marks, rows: range) -> tuple[Flag, ...]:
+    hidden = len(marks.hidden.intersection(rows))
+    if not hidden:
+        return ()
+    why = "filtered out" if marks.filtered else "hidden"
+    return (Flag("hidden-rows", f"{hidden} rows of sheet {name} are {why}; all were read"),)
 
 
 FORMAT = Format("workbook", "Excel or OpenDocument workbook", lambda _: False, _read)

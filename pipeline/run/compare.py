@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -14,7 +14,7 @@ from deamat.consistency.seen import holds_noise
 from deamat.consistency.together import Member, equal_elsewhere, together
 from deamat.core.errors import RawFileError
 from deamat.core.flags import Flag
-from deamat.core.register import split_sheet
+from deamat.core.register import ENCODING, split_sheet
 from deamat.formats.detect import detect
 from deamat.formats.rawfile import RawFile, read_raw
 from deamat.run.build_cache import key_of
@@ -41,7 +41,7 @@ def compare(measured: Sequence[Measured], run: RunContext) -> list[Measured]:
         noticed = together(
             [_member(one) for one in members],
             materials,
-            partial(_noisy, run.folders.raw, members[0].specimen.technique),
+            partial(_noisy, run.folders.raw, members[0].specimen.technique, _encodings(members)),
         )
         for one in members:
             place = (campaign, one.specimen.id)
@@ -60,9 +60,15 @@ def _member(one: Measured) -> Member:
     return Member(one.specimen, one.reduced.measurement, one.reduced.seen)
 
 
-def _noisy(raw: Path, technique: str, place: str) -> bool:
-    path, sheet = split_sheet(place)
-    file = RawFile(path, read_raw(raw, path), technique=technique, sheet=sheet)
+def _encodings(members: Sequence[Measured]) -> dict[str, str]:
+    rows = [one.specimen for one in members]
+    return {row.file: row.notes[ENCODING] for row in rows if row.file and ENCODING in row.notes}
+
+
+def _noisy(raw: Path, technique: str, encodings: Mapping[str, str], place: str) -> bool:
+    path, within = split_sheet(place)
+    declared = encodings.get(path, "")
+    file = RawFile(path, read_raw(raw, path), False, technique, within, declared)
     return holds_noise(detect(file).read(file))
 
 

@@ -14,7 +14,7 @@ from deamat.core.errors import ConfigError, RawFileError
 from deamat.core.ledger import Failure
 from deamat.core.recording import Recording, Specimen
 from deamat.core.records import Flag, Measurement
-from deamat.core.register import SHEET
+from deamat.core.register import ENCODING, SHEET
 from deamat.core.technique import Context
 from deamat.formats.detect import by_name, detect
 from deamat.formats.documentation import contradictions
@@ -104,8 +104,11 @@ def source_of(specimen: Specimen) -> str:
 
 
 def _read(task: Task, path: str) -> Recording:
-    data, sheet = read_raw(task.raw, path), task.specimen.notes.get(SHEET, "")
-    file = RawFile(path, data, task.ends_open, task.specimen.technique, sheet)
+    data, notes = read_raw(task.raw, path), task.specimen.notes
+    file = RawFile(
+        path, data, task.ends_open, task.specimen.technique, notes.get(SHEET, ""),
+        notes.get(ENCODING, ""),
+    )  # fmt: skip
     if file.sha256 != task.sha256:
         raise RawFileError(path, "the file changed while it was being read", hint="run again")
     recording = _format(task.specimen, file).read(file)

@@ -220,7 +220,7 @@ def test_the_twelve_corruptions_in_their_exact_words() -> None:
         "0.028,1": "phantom.csv, line 10, column 6: too many fields: 6 where the header names 5 "
         f"(found '-0.013909'); {export}, without thousands separators and with decimal points",
         "0\x00": "phantom.csv, line 10: a NUL byte in a text file (found '\\x00'); "
-        f"{export} (UTF-16 text must start with its byte order mark)",
+        f"{export} as UTF-8 text",
         "9.9E37": "phantom.csv, line 10, column 2: a number that stands for over-range (9.9E37 or "
         "beyond) (found '9.9E37'); repeat the test within the instrument's range, or exclude the "
         "file",
@@ -244,11 +244,14 @@ def test_the_twelve_corruptions_in_their_exact_words() -> None:
         assert str(refused(file)) == message
 
 
-def test_utf_16_without_its_mark_is_refused() -> None:
-    text = "\n".join(BY_NAME["nexygen"].lines)
-    error = refused(RawFile("x", text.encode("utf-16-le")))
+@pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be"])
+def test_utf_16_without_its_mark_is_read_unless_it_is_cut(encoding: str) -> None:
+    text = "\n".join([*BY_NAME["nexygen"].lines, ""])
+    recording = read(RawFile("x", text.encode(encoding)))
+    assert recording.source.encoding == encoding
+    assert len(recording.columns["force_N"]) > 1
+    error = refused(RawFile("x", text.encode(encoding)[:-1]))
     assert error.reason == "a NUL byte in a text file"
-    assert error.hint.endswith("(UTF-16 text must start with its byte order mark)")
 
 
 def test_utf_16_cut_inside_a_character_is_refused() -> None:

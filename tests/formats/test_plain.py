@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import pytest
 
@@ -102,6 +102,105 @@ def test_encodings_are_those_in_which_the_labels_are_words(language: str, encodi
     assert is_curve(recording)
     alike = {"gbk": "gb18030", "cp1252": "latin-1"}
     assert recording.source.encoding == alike.get(encoding, encoding)
+
+
+@pytest.mark.parametrize("declared", ["cp1252", "windows-1250"])
+def test_an_encoding_that_stays_open_is_declared(declared: str) -> None:
+    """The same byte is u with an umlaut in one encoding and with a ring in the other."""
+    text = "U\tF\u00f9 (N)\tWeg (mm)\n1\t2\t3\n2\t4\t6\n".encode("cp1252")
+    recording = detect(file := RawFile("x", text, technique="tension", declared=declared)).read(
+        file
+    )
+    assert recording.source.encoding == declared.replace("windows-", "cp")
+    assert list(recording.column_units) == [
+        "Weg", "F\u00f9" if declared == "cp1252" else "F\u016f"
+    ]  # fmt: skip
+
+
+def test_an_encoding_that_is_not_that_of_the_file_is_refused() -> None:
+    data = table("Zeit (s),Pr\u00fcfweg (mm),Kraft (N)").encode("cp1252")
+    for declared, reason in (
+        ("utf-8", "it is not in utf-8, which the register declares: byte 11 is no letter there"),
+        ("ebcdic", "the register declares an unknown encoding 'ebcdic'; write one of utf-8, "),
+    ):
+        file = RawFile("x", data, technique="tension", declared=declared)
+        with pytest.raises(RawFileError) as caught:
+            detect(file)
+        assert reason in str(caught.value)
+
+
+def test_two_encodings_that_mean_different_columns_are_refused() -> None:
+    """Bytes that are words for a travel in GB18030 and in Shift-JIS, in two columns."""
+    chinese, japanese = "\u4f4d\u79fb".encode("gbk"), "\u5909\u4f4d".encode("cp932")
+    data = b"N\t" + chinese + b" (mm)\t" + japanese + b" (mm)\tF (N)\n1\t2\t3\t4\n2\t3\t4\t5\n"
+    assert "it may be in gb18030 or cp932, which read its labels differently" in refused(data)
+    file = RawFile("x", data, technique="tension", declared="gbk")
+    assert detect(file).read(file).columns["displacement_m"][0] == 2e-3
+
+
+def test_specimens_side_by_side_in_a_text_are_named_by_their_columns() -> None:
+    text = "Weg;Kraft;;Weg;Kraft\nmm;N;;mm;N\n0,5;1,5;;0,25;3,5\n1,5;2,5;;0,75;4,5\n2,5;3,5;;;\n"
+    assert refused(text).endswith("of each specimen in the register: `x#A:B`, `x#D:E`")
+    for place, force_N in (("A:B", [1.5, 2.5, 3.5]), ("D:E", [3.5, 4.5])):
+        file = RawFile("x", text.encode(), technique="tension", place=place)
+        assert detect(file).read(file).columns["force_N"].tolist() == force_N
+
+
+def test_times_of_a_clock_are_in_seconds() -> None:
+    head = "No,Time,Viscosity (Pa s)\n"
+    text = head + "1,0:00:01.5,3\n2,0:15:00,4\n3,30:00:00,9\n"
+    assert read(text, "viscosity").columns["time_s"].tolist() == [1.5, 900.0, 108000.0]
+    text = head.replace("Time", "Time (mm:ss)") + "1,00:01.5,3\n2,15:00,4\n3,99:00,9\n"
+    assert read(text, "viscosity").columns["time_s"].tolist() == [1.5, 900.0, 5940.0]
+    for cells, reason in (
+        ("14:00:01", "it may be a time of the day or an elapsed time"),
+        ("15:00", "no unit stands beside 'Time' (time)"),
+        ("2025-03-01 14:00:01", "no unit stands beside 'Time' (time)"),
+    ):
+        assert reason in refused(head + f"1,{cells},3\n2,{cells},4\n", "viscosity")
+    under = head.replace("Time", "Time (s)") + "1,0:00:01,3\n2,0:15:00,4\n"
+    assert "line 2, column 2: a time as a clock shows it, under a unit" in refused(
+        under, "viscosity"
+    )
+
+
+@pytest.mark.parametrize(
+    "spoil",
+    [
+        lambda text: text,
+        lambda text: text.replace("\r\n", ";\r\n"),
+        lambda text: text.replace(";", '";"').replace("\r\n", '"\r\n"')[:-1].join(('"', "")),
+        lambda text: text.replace(",", "."),
+        lambda text: text.replace("-0", "\u22120"),
+        lambda text: text.replace("12345", "12 345"),
+    ],
+)
+def test_long_tables_are_read_alike_in_one_pass_and_cell_by_cell(
+    spoil: Callable[[str], str],
+) -> None:
+    rows = "".join(f"{n};{0.25 * n:.2f};{-1.5 * n:.3f};{12345 + n}\r\n" for n in range(40))
+    text = "Zeit;Weg;Kraft;Nr\r\ns;mm;N;\r\n" + rows.replace(".", ",")
+    plain, odd = read(text), read(spoil(text))
+    for name, values in plain.columns.items():
+        assert values.tolist() == odd.columns[name].tolist()
+    assert (odd.source.first_line, odd.source.last_line) == (3, 42)
+
+
+def test_every_place_of_a_damaged_cell_in_a_long_table_is_said() -> None:
+    rows = [f"{n};{0.25 * n:.2f};{1.5 * n:.3f}" for n in range(40)]
+    head = "Zeit;Weg;Kraft\ns;mm;N\n"
+    for cell, reason in (
+        ("1..5", "not a number"), ("", "a blank cell"), ("OVER", "over-range text"),
+        ("1,5", "a decimal comma in a file with decimal points"),
+    ):  # fmt: skip
+        spoilt = [*rows[:30], f"30;{cell};45", *rows[31:]]
+        said = refused(head + "\n".join(spoilt) + "\n")
+        assert "line 33, column 2: " in said
+        assert reason in said
+    assert "line 34: a blank line" in refused(head + "\n".join([*rows[:31], "", *rows[31:], ""]))
+    assert "line 33, column 2: too few fields" in refused(
+        head + "\n".join([*rows[:30], "30;7.5", *rows[31:], ""])
+    )
 
 
 def test_what_no_technique_asks_for_is_a_note() -> None:

@@ -16,15 +16,27 @@ _TYPES = (
     '.main+xml"/>'
 )
 _STYLES = (
-    f'<styleSheet {_MAIN}><cellXfs count="2"><xf numFmtId="0"/><xf numFmtId="10"/></cellXfs>'
-    "</styleSheet>"
-)
+    f'<styleSheet {_MAIN}><cellXfs count="4"><xf numFmtId="0"/><xf numFmtId="10"/>'
+    '<xf numFmtId="21"/><xf numFmtId="22"/></cellXfs></styleSheet>'
+)  # general, percent, h:mm:ss, date and time
 
 Rows = Sequence[Sequence[str | float | None]]
 
 
-def xlsx(sheets: Mapping[str, Rows], *, hidden: int = 0, replaced: Mapping[str, str] = {}) -> bytes:
-    """A workbook of sheets; `replaced` puts other XML in the place of a cell (`C3`)."""
+def xlsx(
+    sheets: Mapping[str, Rows],
+    *,
+    hidden: int = 0,
+    replaced: Mapping[str, str] = {},
+    after: str = "",
+) -> bytes:
+    """A workbook of sheets; `replaced` puts other XML in the place of a cell (`C3`).
+
+    Parameters
+    ----------
+    hidden : number of a row
+    after : XML below the rows
+    """
     parts = {
         "[Content_Types].xml": f'<Types xmlns="{_PACKAGE}/content-types">{_TYPES}</Types>',
         "_rels/.rels": f'<Relationships xmlns="{_PACKAGE}/relationships"><Relationship Id="r" '
@@ -41,7 +53,7 @@ def xlsx(sheets: Mapping[str, Rows], *, hidden: int = 0, replaced: Mapping[str, 
         parts[f"xl/worksheets/sheet{at}.xml"] = (
             f"<worksheet {_MAIN}><sheetData>"
             + "".join(_row(n, row, n == hidden, replaced) for n, row in enumerate(rows, start=1))
-            + "</sheetData></worksheet>"
+            + f"</sheetData>{after}</worksheet>"
         )
     links += f'<Relationship Id="s" Type="{_LINKS}/styles" Target="styles.xml"/>'
     parts["xl/workbook.xml"] = (
@@ -53,14 +65,22 @@ def xlsx(sheets: Mapping[str, Rows], *, hidden: int = 0, replaced: Mapping[str, 
     return _zipped(parts)
 
 
-def ods(rows: Rows) -> bytes:
-    """An OpenDocument workbook of one sheet."""
+def ods(rows: Rows, seen: Mapping[int, str] = {}) -> bytes:
+    """An OpenDocument workbook of one sheet.
+
+    Parameters
+    ----------
+    rows : of cells; a text that starts with `<` is XML
+    seen : number of a row, counted from 0, to its visibility
+    """
     space = "urn:oasis:names:tc:opendocument:xmlns"
     body = ""
-    for row in rows:
+    for number, row in enumerate(rows):
         cells = ""
         for cell in row:
-            if isinstance(cell, str):
+            if isinstance(cell, str) and cell.startswith("<"):
+                cells += cell
+            elif isinstance(cell, str):
                 cells += (
                     f'<table:table-cell office:value-type="string"><text:p>{cell}</text:p>'
                     "</table:table-cell>"
@@ -69,7 +89,8 @@ def ods(rows: Rows) -> bytes:
                 cells += f'<table:table-cell office:value-type="float" office:value="{cell}"/>'
             else:
                 cells += "<table:table-cell/>"
-        body += f"<table:table-row>{cells}</table:table-row>"
+        visible = f' table:visibility="{seen[number]}"' if number in seen else ""
+        body += f"<table:table-row{visible}>{cells}</table:table-row>"
     content = (
         f'<office:document-content xmlns:office="{space}:office:1.0" '
         f'xmlns:table="{space}:table:1.0" xmlns:text="{space}:text:1.0"><office:body>'
