@@ -16,7 +16,7 @@ from deamat.core.errors import ConfigError, RawFileError
 from deamat.core.instruments import Instruments
 from deamat.core.ledger import Failure
 from deamat.core.recording import Recording
-from deamat.core.register import REGISTER_FILES, SHEET, split_sheet
+from deamat.core.register import ENCODING, REGISTER_FILES, SHEET, split_sheet
 from deamat.formats.detect import by_name, detect, is_binary
 from deamat.formats.format import Format
 from deamat.formats.rawfile import RawFile, read_raw
@@ -75,7 +75,7 @@ def _below(path: Path) -> Iterator[Path]:
 
 
 def _check(path: Path, asked: Asked, config: Config) -> Checked:
-    name, sheet = split_sheet(str(path))
+    name, within = split_sheet(str(path))
     if Path(name).name in _NOT_DATA:
         said = "it describes a campaign and holds no curve; give the data files"
         return Checked(str(path), read=False, faults=(said,))
@@ -85,7 +85,7 @@ def _check(path: Path, asked: Asked, config: Config) -> Checked:
     except RawFileError as error:
         reason = "there is no such file" if not Path(name).exists() else error.reason
         return Checked(str(path), read=False, faults=(reason,))
-    file = RawFile(str(path), data, place.info.ends_open, sheet=sheet)
+    file = RawFile(str(path), data, place.info.ends_open, place=within)
     technique = asked.technique or place.technique
     tried = [key for key in ([technique] if technique else ASKED) if key in ASKED]
     found: dict[str, Recording] = {}
@@ -108,8 +108,10 @@ def _check(path: Path, asked: Asked, config: Config) -> Checked:
 def _read(file: RawFile, asked: Asked, place: Place, config: Config) -> Recording:
     rows = registered(place, TECHNIQUES[file.technique], config) if place.technique else ()
     named = asked.format or next((row.format for row in rows if row.format), None)
-    if not file.sheet and rows:
-        file = replace(file, sheet=rows[0].notes.get(SHEET, ""))
+    if rows:
+        said = rows[0].notes
+        within = file.place or said.get(SHEET, "")
+        file = replace(file, place=within, declared=said.get(ENCODING, ""))
     return (by_name(named) if named else detect(file)).read(file)
 
 
