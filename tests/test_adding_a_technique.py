@@ -110,7 +110,7 @@ def test_what_the_page_adds_comes_out_on_a_card_with_its_refusals(place: Place) 
     assert record["u_independent"] == pytest.approx(3**-0.5)
     assert record["u_shared"] == pytest.approx(1.0)
     figures = {p.name for p in (place.folder / "processed" / "figures" / "demo").iterdir()}
-    assert {"gel-a-hardness.svg", "gel-a-hardness.png"} <= figures
+    assert "gel-a-hardness.svg" in figures
     trace = place.call("deamat", "trace", "gel-a", "shore_A_hardness")
     assert "demo/hardness/specimens.csv" in trace
 

@@ -26,6 +26,12 @@ _LADDERS: dict[str, tuple[tuple[float, str], ...]] = {
     "Hz": ((1e3, "kHz"), (0.0, "Hz")),
 }
 
+# Units as pages and figures write them; a terminal may lack these letters.
+_TYPESET = {
+    "um": "µm", "uN": "µN", "V/um": "V/µm", "C": "°C", "Pa.s": "Pa·s", "mPa.s": "mPa·s",
+    "m2": "m²", "mm2": "mm²",
+}  # fmt: skip
+
 # Pure numbers that are spoken of in percent; the others (permittivity, shape) are not.
 _PERCENT = frozenset({"elongation_at_break"})
 
@@ -70,6 +76,10 @@ class Scale:
         """Write one SI value with its unit."""
         return self.with_unit(self.number(si))
 
+    def typeset(self) -> Scale:
+        """Return the same scale with its unit as pages and figures write it: `V/µm`."""
+        return Scale(_TYPESET.get(self.unit, self.unit), self.decimals)
+
     def with_unit(self, text: str) -> str:
         """Put the unit behind a text; a pure number has none."""
         return text if self.unit == "1" else f"{text} {self.unit}"
@@ -112,21 +122,53 @@ def readable_uncertainty(u: float, unit: str) -> str:
 
 def readable(quantity: Quantity, key: str = "") -> str:
     """Write a quantity as `158.8 ± 1.1 kPa`; without an uncertainty as `158.8 kPa`."""
-    scale = scale_of(quantity, key)
+    return _with_uncertainty(quantity, scale_of(quantity, key))
+
+
+def _with_uncertainty(quantity: Quantity, scale: Scale) -> str:
     text = scale.number(quantity.value)
     if scale.decimals is not None:
         text += f" ± {scale.number(quantity.standard_uncertainty)}"
     return scale.with_unit(text)
 
 
-def readable_record(record: PropertyRecord) -> str:
-    """Write the value of a record: `158.8 ± 1.1 kPa`, `6 to 6.5 h` or `>= 12 h` of a limit."""
-    scale = scale_of(record.quantity, record.key)
+def readable_record(record: PropertyRecord, scale: Scale | None = None) -> str:
+    """Write the value of a record: `158.8 ± 1.1 kPa`, `6 to 6.5 h` or `>= 12 h` of a limit.
+
+    Parameters
+    ----------
+    scale : None chooses the one of the record's quantity
+    """
+    scale = scale or scale_of(record.quantity, record.key)
     if record.bound == "interval":
         return readable_interval(record.ci95, scale)
     if record.bound == "lower":
         return f">= {scale.with_number(record.quantity.value)}"
-    return readable(record.quantity, record.key)
+    return _with_uncertainty(record.quantity, scale)
+
+
+def said_of(records: Sequence[PropertyRecord]) -> tuple[str, ...]:
+    """Write what a figure says of each record, in typeset units.
+
+    `tensile modulus 0.95 ± 0.02 MPa, n = 8 (95 % interval 0.90 to 1.00 MPa)`; conditions are told
+    where they tell records of one property apart.
+    """
+    lines = []
+    for record in records:
+        alike = [other.conditions for other in records if other.key == record.key]
+        telling = {
+            key: value
+            for key, value in record.conditions.items()
+            if any(other.get(key) != value for other in alike)
+        }
+        words = record.key.replace("_", " ")
+        at = f" ({readable_conditions(telling, typeset=True)})" if telling else ""
+        scale = scale_of(record.quantity, record.key).typeset()
+        line = f"{words}{at} {readable_record(record, scale)}, n = {record.n}"
+        if record.bound == "exact":
+            line += f" (95 % interval {readable_interval(record.ci95, scale)})"
+        lines.append(line)
+    return tuple(lines)
 
 
 def readable_interval(interval: tuple[float, float], scale: Scale) -> str:
@@ -141,19 +183,24 @@ def readable_interval(interval: tuple[float, float], scale: Scale) -> str:
     return scale.with_unit(f"{scale.number(low)} to {scale.number(high)}")
 
 
-def readable_conditions(conditions: Mapping[str, Condition]) -> str:
-    """Write conditions as `age after cure, temperature 23 C`, in the order of the closed list."""
+def readable_conditions(conditions: Mapping[str, Condition], typeset: bool = False) -> str:
+    """Write conditions as `age after cure, temperature 23 C`, in the order of the closed list.
+
+    Parameters
+    ----------
+    typeset : write `23 °C`, as pages and figures do
+    """
     said = []
     for key in sorted(conditions, key=list(_CONDITION_WORDS).index):
         words, unit = _CONDITION_WORDS[key]
-        said.append(f"{words} {_readable_condition(conditions[key], unit)}")
+        scale = Scale(unit, None).typeset() if typeset else Scale(unit, None)
+        said.append(f"{words} {_readable_condition(conditions[key], scale)}")
     return ", ".join(said) or "none stated"
 
 
-def _readable_condition(value: Condition, unit: str) -> str:
+def _readable_condition(value: Condition, scale: Scale) -> str:
     if isinstance(value, str):
         return value
-    scale = Scale(unit, None)
     if isinstance(value, tuple):
         return scale.with_unit(" to ".join(scale.number(v) for v in value))
     return scale.with_number(value)

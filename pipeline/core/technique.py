@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Generic
+from typing import Any, Generic
 
 from pydantic import BaseModel
 from typing_extensions import TypeVar  # with a default, which typing has from Python 3.13 on
 
+from deamat.core.chart import Chart
 from deamat.core.instruments import Machine
 from deamat.core.quantity import Quantity
 from deamat.core.recording import Recording, Specimen
 from deamat.core.records import Law, Measurement, Result, Summary
 from deamat.core.register import SPECIMENS, RegisterForm
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 C = TypeVar("C", bound=BaseModel, default=BaseModel)
 R = TypeVar("R", bound=Result, default=Result)
@@ -57,7 +55,7 @@ class Technique(Generic[C, R]):
     required, optional : register columns by SI name (`diameter_m`) that it reads
     reduce : one specimen's recording to a measurement; a refused value is a `Refusal` in it
     summarise : all measurements of one material under one set of conditions to a summary
-    figure : draws a material's measurements into the given axes; None for a technique without one
+    figure : shows a material's measurements as a chart; None for a technique without one
     register : which register it reads and what a row of it is; one row per specimen by default
     """
 
@@ -69,7 +67,7 @@ class Technique(Generic[C, R]):
     optional: tuple[str, ...]
     reduce: Callable[[Specimen, Recording | None, Context[C]], Measurement[R]]
     summarise: Callable[[Sequence[Measurement[R]], Context[C]], Summary]
-    figure: Callable[[Axes, Sequence[Measurement[R]], Summary], None] | None = None
+    figure: Callable[[Sequence[Measurement[R]], Summary], Chart] | None = None
     register: RegisterForm = SPECIMENS
 
 

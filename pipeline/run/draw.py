@@ -7,11 +7,14 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
+from deamat.core.chart import Chart
 from deamat.core.ledger import Failure
 from deamat.core.present import readable_conditions
 from deamat.core.records import Condition, Measurement, Summary
 from deamat.core.slug import file_stem, short_slug
+from deamat.report.chart.page import picture
 from deamat.report.moduli import is_modulus, modulus_bars
+from deamat.report.moduli_chart import moduli_chart
 from deamat.run.boundary import attempt, killed
 from deamat.run.build_cache import STALE
 from deamat.run.measure import Group, RunContext
@@ -39,7 +42,7 @@ class FigureJob:
     @property
     def files(self) -> list[str]:
         """What it publishes."""
-        return [f"figures/{self.name}.svg", f"figures/{self.name}.png"]
+        return [f"figures/{self.name}.svg"]
 
     @property
     def rests_on(self) -> tuple[str, ...]:
@@ -57,7 +60,7 @@ def figure_jobs(
     for g in groups:
         if TECHNIQUES[g.technique].figure is None or not _has_something_to_draw(g):
             continue
-        said = readable_conditions(dict(g.conditions)) if g.conditions else ""
+        said = readable_conditions(dict(g.conditions), typeset=True) if g.conditions else ""
         name = run.config.name_of(g.material)
         title = f"{name}, {g.technique}" + (f", {said}" if said else "")
         job = FigureJob(
@@ -131,21 +134,26 @@ def _lost(job: FigureJob) -> Failure:
 
 
 def draw_one(folder: Path, job: FigureJob) -> None:
-    """Draw one figure as SVG and PNG."""
-    from deamat.report.figures import moduli_figure, technique_figure  # matplotlib
-
-    place = folder / job.name
+    """Draw one figure as SVG."""
+    place = folder / f"{job.name}.svg"
     place.parent.mkdir(parents=True, exist_ok=True)
-    if job.technique is None:
-        records = [r for s in job.summaries for r in s.records]
-        refusals = [r for s in job.summaries for r in s.refusals]
-        names = dict(job.labels)
-        bars = [replace(b, material=names[b.material]) for b in modulus_bars(records, refusals)]
-        moduli_figure(place.parent, place.name, job.title, bars, job.synthetic)
-        return
-    figure = TECHNIQUES[job.technique].figure
-    if figure is not None:
-        technique_figure(
-            place.parent, place.name, job.title,
-            lambda axes: figure(axes, job.measurements, job.summaries[0]), job.synthetic,
-        )  # fmt: skip
+    place.write_bytes(picture(chart_of(job), job.title, job.synthetic))
+
+
+def chart_of(job: FigureJob) -> Chart:
+    """Return what a figure shows.
+
+    Raises
+    ------
+    ValueError : there is nothing to show
+    """
+    if job.technique is not None:
+        figure = TECHNIQUES[job.technique].figure
+        if figure is None:
+            raise ValueError(f"{job.technique} has no figure")
+        return figure(job.measurements, job.summaries[0])
+    records = [r for s in job.summaries for r in s.records]
+    refusals = [r for s in job.summaries for r in s.refusals]
+    names = dict(job.labels)
+    bars = [replace(b, material=names[b.material]) for b in modulus_bars(records, refusals)]
+    return moduli_chart(bars)

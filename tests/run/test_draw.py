@@ -7,12 +7,12 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-import pytest
+import numpy as np
 
-import deamat.report.figures
 from deamat.core.records import Condition, Summary
 from deamat.run.draw import FigureJob, draw_one, figure_jobs
 from deamat.run.measure import Group
+from deamat.techniques.shared.modulus import LoadingCurve
 from tests.materials.samples import measurement, modulus, origin, refusal
 
 CURVE = {"nominal_strain": [0.0, 0.1], "nominal_stress_Pa": [0.0, 10.0]}
@@ -36,7 +36,7 @@ def test_a_group_has_its_figure_and_a_campaign_that_of_its_moduli() -> None:
     assert list(made) == ["soft-2026/gel-a-compression", "soft-2026/moduli"]
     job, parts = made["soft-2026/gel-a-compression"]
     assert (job.title, job.technique, job.synthetic) == ("GEL-A, compression", "compression", False)
-    assert job.files == [f"figures/{job.name}.svg", f"figures/{job.name}.png"]
+    assert job.files == [f"figures/{job.name}.svg"]
     assert parts == {GROUP.subject: "k", "about": "GEL-A, compression False"}
     moduli, parts = made["soft-2026/moduli"]
     assert (moduli.title, moduli.technique) == ("Moduli, soft-2026", None)
@@ -53,7 +53,7 @@ def test_conditions_are_in_the_name_of_a_figure_and_tell_it_apart() -> None:
     assert names[0] == "soft-2026/gel-a-compression"
     assert names[1].startswith("soft-2026/gel-a-compression-2-months-323.15k-")
     assert names[2].startswith("soft-2026/gel-a-compression-2-months-296.15k-")
-    assert made[names[1]][0].title == "GEL-A, compression, age 2 months, temperature 50 C"
+    assert made[names[1]][0].title == "GEL-A, compression, age 2 months, temperature 50 °C"
 
 
 def test_nothing_to_draw_is_no_figure() -> None:
@@ -86,18 +86,17 @@ def test_a_figure_rests_on_the_files_of_its_curves_and_of_its_values() -> None:
 
 
 def test_one_job_makes_one_picture_in_a_folder_of_its_own(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path,
 ) -> None:
-    drawn: list[tuple[Any, ...]] = []
-    for name in ("moduli_figure", "technique_figure"):
-        monkeypatch.setattr(
-            deamat.report.figures, name, lambda *told, name=name: drawn.append((name, *told))
-        )
-    for job, _ in jobs(GROUP).values():
+    curve = LoadingCurve(np.array([0.0, 0.1]), np.array([0.0, 10.0]), None)
+    group = replace(GROUP, measurements=(replace(A1, result=curve),))
+    for job, _ in jobs(group).values():
         draw_one(tmp_path / "deep" / "figures", job)
     place = tmp_path / "deep" / "figures" / "soft-2026"
-    assert place.is_dir()
-    (curve, moduli) = drawn
-    assert curve[:4] == ("technique_figure", place, "gel-a-compression", "GEL-A, compression")
-    assert moduli[:4] == ("moduli_figure", place, "moduli", "Moduli, soft-2026")
-    assert [bar.material for bar in moduli[4]] == ["GEL-A"]
+    assert sorted(path.name for path in place.iterdir()) == ["gel-a-compression.svg", "moduli.svg"]
+    drawn, moduli = (
+        (place / name).read_text("utf-8") for name in ("gel-a-compression.svg", "moduli.svg")
+    )
+    assert "<title>GEL-A, compression</title>" in drawn
+    assert "<title>Moduli, soft-2026</title>" in moduli
+    assert ">GEL-A</text>" in moduli

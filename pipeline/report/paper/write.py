@@ -7,7 +7,7 @@ from pathlib import Path
 
 from deamat.core.atomic import whole_folder, write_atomically
 from deamat.materials.database import Database, open_database
-from deamat.report.figures import technique_figure
+from deamat.report.figures import axes_figure
 from deamat.report.paper import printed
 from deamat.report.paper.actuator_figures import ACTUATOR_FIGURES
 from deamat.report.paper.actuators import table1, table5, totals
@@ -116,7 +116,7 @@ def _draw(
     pictures = {}
     for name, (title, draw) in figures.items():
         marked = _shows_synthetic(name, entries)
-        svg, _ = technique_figure(folder / "figures", name, title, draw, marked)
+        svg, _ = axes_figure(folder / "figures", name, title, draw, marked)
         text = svg.read_text(encoding="utf-8")
         pictures[name] = Picture(name, title, text[text.index("<svg") :], marked)
     return pictures

@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 def draw(checked: Checked, folder: Path) -> Iterator[Path]:
     """Draw each curve of a file into a folder; give the pictures' paths."""
-    from deamat.report.figures import technique_figure
+    from deamat.report.figures import axes_figure
 
     curves = {reading.curve: reading.technique for reading in checked.readings if reading.curve}
     folder.mkdir(parents=True, exist_ok=True)
     for curve, technique in curves.items():
         name = file_stem(Path(checked.path).name, technique)
         title = f"{Path(checked.path).name}: {technique}"
-        _, png = technique_figure(folder, name, title, partial(_draw, curve), synthetic=False)
+        _, png = axes_figure(folder, name, title, partial(_draw, curve), synthetic=False)
         yield png
 
 

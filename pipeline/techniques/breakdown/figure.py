@@ -1,14 +1,15 @@
-"""The Weibull probability plot, drawn on axes that the report hands in."""
+"""The figure of a material: its Weibull probability plot."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from deamat.core.arrays import FloatArray
+from deamat.core.chart import Axis, Band, Chart, Line, Mark, Points
 from deamat.core.errors import FitRefused
+from deamat.core.present import said_of
 from deamat.core.records import Measurement, Summary
 from deamat.core.units import from_si
 from deamat.estimators.weibull.fit import fit, quantile
@@ -16,17 +17,14 @@ from deamat.estimators.weibull.plot import confidence_band, plotting_positions, 
 from deamat.techniques.breakdown.result import FilmTest
 from deamat.techniques.breakdown.sample import Sample, samples
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 _PERCENT = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 80.0, 95.0, 99.0)
 _FOOT = float(weibull_axis(0.01))
 _TOP = float(weibull_axis(0.995))
 _STEPS = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0)  # of the ticks in a decade
 
 
-def figure(axes: Axes, measurements: Sequence[Measurement[FilmTest]], _: Summary) -> None:
-    """Draw ln(-ln(1 - F)) over the field: specimens, fitted line, 95 % band of its quantiles.
+def figure(measurements: Sequence[Measurement[FilmTest]], summary: Summary) -> Chart:
+    """Show ln(-ln(1 - F)) over the field: specimens, fitted line, 95 % band of its quantiles.
 
     Specimens that did not break have no place of their own on the upright axis: they are marked at
     its foot, at the field that they bore.
@@ -35,57 +33,55 @@ def figure(axes: Axes, measurements: Sequence[Measurement[FilmTest]], _: Summary
     ----------
     measurements : of one material; each electrode area and rate of rise has its own line
     """
-    ends: list[float] = []
     groups = list(samples(measurements))
-    for group in groups:
+    marks: list[Mark] = []
+    for number, group in enumerate(groups):
         named = "" if len(groups) == 1 else f", {_conditions(group)}"
-        ends += [float(x) for x in from_si(1.0, "V/um") * group.field_V_per_m]
-        _censored(axes, group, named)
+        marks += _censored(group, named, number)
         try:
-            _fitted(axes, group, named)
+            marks += _fitted(group, named, number)
         except FitRefused:  # the summary says why
             continue
-    axes.set_xscale("log")
-    if ends and min(ends) > 0.0:
-        low, high = 0.7 * min(ends), 1.25 * max(ends)
-        ticks = _ticks(low, high)
-        axes.set_xlim(low, high)
-        axes.set_xticks(ticks, [f"{x:g}" for x in ticks])
-        axes.set_xticks([], minor=True)
-    axes.set_ylim(_FOOT - 0.25, _TOP)
-    upright = [float(weibull_axis(p / 100.0)) for p in _PERCENT]
-    axes.set_yticks(upright, [f"{p:g}" for p in _PERCENT])
-    axes.set_xlabel("electric field [V/um]")
-    axes.set_ylabel("broken [%], as ln(-ln(1 - F))")
+    ends = [float(x) for group in groups for x in from_si(1.0, "V/um") * group.field_V_per_m]
+    upright = tuple((float(weibull_axis(p / 100.0)), f"{p:g}") for p in _PERCENT)
+    return Chart(
+        _field(ends),
+        Axis("broken [%], as ln(-ln(1 - F))", limits=(_FOOT - 0.25, _TOP), ticks=upright),
+        tuple(marks), says=said_of(summary.records),
+    )  # fmt: skip
 
 
-def _fitted(axes: Axes, group: Sample, named: str) -> None:
+def _field(ends: Sequence[float]) -> Axis:
+    label = "electric field [V/µm]"
+    if not ends or min(ends) <= 0.0:
+        return Axis(label, "log")
+    low, high = 0.7 * min(ends), 1.25 * max(ends)
+    ticks = tuple((x, f"{x:g}") for x in _ticks(low, high))
+    return Axis(label, "log", limits=(low, high), ticks=ticks)
+
+
+def _fitted(group: Sample, named: str, number: int) -> Iterator[Mark]:
     x, censored = from_si(1.0, "V/um") * group.field_V_per_m, group.censored
     best = fit(x, censored)
     points = plotting_positions(x, censored)
     upright = np.linspace(_FOOT, _TOP, 40)
     fractions = -np.expm1(-np.exp(upright))
     low, high = confidence_band(x, fractions, censored)
-    line = [quantile(best.scale, best.shape, float(p)) for p in fractions]
-    axes.fill_betweenx(
-        upright, low, high, alpha=0.18, linewidth=0, color="0.4", label=f"95 % band{named}"
-    )
-    axes.plot(
-        line, upright, color="black", linewidth=1.2,
-        label=f"fit: {best.scale:.4g} V/um, shape {best.shape:.3g}{named}",
-    )  # fmt: skip
-    axes.plot(
-        points.value, weibull_axis(points.fraction), "o", markersize=4.0,
-        label=f"broken (n = {best.failures}){named}",
+    line = np.array([quantile(best.scale, best.shape, float(p)) for p in fractions])
+    yield Band(upright, low, high, f"95 % band{named}", sideways=True)
+    yield Line(line, upright, f"fit: {best.scale:.4g} V/µm, shape {best.shape:.3g}{named}")
+    yield Points(
+        points.value, weibull_axis(points.fraction), f"broken (n = {best.failures}){named}",
+        series=number,
     )  # fmt: skip
 
 
-def _censored(axes: Axes, group: Sample, named: str) -> None:
+def _censored(group: Sample, named: str, number: int) -> Iterator[Points]:
     unbroken: FloatArray = from_si(1.0, "V/um") * group.field_V_per_m[group.censored]
     if unbroken.size:
-        axes.plot(
-            unbroken, np.full(unbroken.size, _FOOT - 0.1), ">", markersize=5.0, fillstyle="none",
-            label=f"not broken at this field (n = {unbroken.size}){named}",
+        yield Points(
+            unbroken, np.full(unbroken.size, _FOOT - 0.1),
+            f"not broken at this field (n = {unbroken.size}){named}", "triangle", series=number,
         )  # fmt: skip
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
+from deamat.core.chart import Band, Line, Points
 from deamat.core.instruments import Machine
 from deamat.core.quantity import Quantity
 from deamat.core.records import PropertyRecord
@@ -32,7 +33,7 @@ from tests.techniques.breakdown.breakdowns import (
     summarise,
 )
 from tests.techniques.curves import context
-from tests.techniques.drawn import blank, by_label
+from tests.techniques.shown import marks
 
 
 def test_the_fit_is_the_maximum_likelihood_of_both_parameters() -> None:
@@ -260,31 +261,27 @@ def test_config_says_what_is_wrong(section: dict[str, Any], message: str) -> Non
 
 
 def test_the_figure_is_a_weibull_plot_with_line_band_and_unbroken_specimens() -> None:
-    marks = [x > 50.0 for x in LAWLESS_I]
-    measured = fields([min(x, 50.0) for x in LAWLESS_I], marks)
-    axes = blank()
+    unbroken = [x > 50.0 for x in LAWLESS_I]
+    measured = fields([min(x, 50.0) for x in LAWLESS_I], unbroken)
     assert TECHNIQUE.figure is not None
-    TECHNIQUE.figure(axes, measured, summarise(measured))
-    drawn = by_label(axes)
-    line = next(v for k, v in drawn.items() if k.startswith("fit"))
+    chart = TECHNIQUE.figure(measured, summarise(measured))
+    (line,) = marks(chart, Line)
+    assert line.label.startswith("fit")
     shape = records(measured)[SHAPE].quantity.value
-    slope = np.diff(line[1]) / np.diff(np.log(line[0]))
+    slope = np.diff(line.y) / np.diff(np.log(line.x))
     assert slope == pytest.approx(np.full(slope.size, shape))
-    broken = drawn["broken (n = 16)"]
-    assert broken[0] == pytest.approx([x for x in LAWLESS_I if x <= 50.0])
-    assert drawn["not broken at this field (n = 4)"][0].tolist() == [50.0] * 4
-    (band,) = axes.collections
-    low, high = np.split(np.asarray(band.get_paths()[0].vertices)[1:-2], 2)
-    upright = low[:, 1]
-    assert np.all(low[:, 0] < np.interp(upright, line[1], line[0]))
-    assert np.all(high[::-1, 0] > np.interp(upright, line[1], line[0]))
-    assert (axes.get_xlabel(), axes.get_xscale()) == ("electric field [V/um]", "log")
+    points = {mark.label: mark.x for mark in marks(chart, Points)}
+    assert points["broken (n = 16)"] == pytest.approx([x for x in LAWLESS_I if x <= 50.0])
+    assert points["not broken at this field (n = 4)"].tolist() == [50.0] * 4
+    (band,) = (mark for mark in chart.marks if isinstance(mark, Band))
+    assert np.all(band.low < np.interp(band.along, line.y, line.x))
+    assert np.all(band.high > np.interp(band.along, line.y, line.x))
+    assert (chart.x.label, chart.x.spacing) == ("electric field [V/µm]", "log")
 
 
 def test_a_sample_that_is_refused_still_has_axes() -> None:
     measured = fields([40.0, 41.0], [True, True])
-    axes = blank()
     assert TECHNIQUE.figure is not None
-    TECHNIQUE.figure(axes, measured, summarise(measured))
-    assert list(by_label(axes)) == ["not broken at this field (n = 2)"]
-    assert axes.get_ylabel() == "broken [%], as ln(-ln(1 - F))"
+    chart = TECHNIQUE.figure(measured, summarise(measured))
+    assert [mark.label for mark in marks(chart, Points)] == ["not broken at this field (n = 2)"]
+    assert chart.y.label == "broken [%], as ln(-ln(1 - F))"

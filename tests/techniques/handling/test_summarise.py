@@ -8,6 +8,8 @@ from collections.abc import Iterable
 
 import pytest
 
+from deamat.core.chart import Line as Stroke
+from deamat.core.chart import Points
 from deamat.core.instruments import Machine
 from deamat.core.recording import Recording
 from deamat.core.records import Measurement, PropertyRecord, Summary
@@ -18,7 +20,7 @@ from deamat.techniques.handling.config import KEY, HandlingConfig
 from deamat.techniques.handling.runs import Line
 from deamat.twin.campaign import SEED
 from deamat.twin.handling import ROOM_C, handling_part, true_handling_times
-from tests.techniques.drawn import blank, by_label, spans
+from tests.techniques.shown import marks, windows
 
 HEADER = "material,batch,bed_temperature_C,time_h,line,defect,limit\n"
 NO_FILE: Recording | None = None
@@ -300,18 +302,17 @@ def test_the_figure_shows_every_line_and_the_interval() -> None:
     assert TECHNIQUE.figure is not None
     text = run("a", (1, 2), (3, "gap", "")) + run("b", (1, 2), (3, "no flow", "torque"))
     rows = measured(text)
-    axes = blank()
-    TECHNIQUE.figure(axes, rows, TECHNIQUE.summarise(rows, context()))
-    points = {name: list(zip(*line, strict=True)) for name, line in by_label(axes).items()}
-    assert points == {
+    chart = TECHNIQUE.figure(rows, TECHNIQUE.summarise(rows, context()))
+    shown = {mark.label: list(zip(mark.x, mark.y, strict=True)) for mark in marks(chart, Points)}
+    assert shown == {
         "clean": [(1.0, 0), (2.0, 0), (1.0, 1), (2.0, 1)],
         "defective": [(3.0, 0), (3.0, 1)],
         "equipment limit": [(3.0, 1)],
     }
-    assert spans(axes) == [(2.0, 3.0)]
-    assert [label.get_text() for label in axes.get_yticklabels()] == ["a", "b"]
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("time since mixing [h]", "run")
-    open_ended = blank()
+    assert windows(chart) == [(2.0, 3.0)]
+    clean = [(list(mark.x), list(mark.y)) for mark in marks(chart, Stroke)]
+    assert clean == [([0.0, 2.0], [0.0, 0.0]), ([0.0, 2.0], [1.0, 1.0])]
+    assert chart.y.ticks == ((0.0, "a"), (1.0, "b"))
+    assert (chart.x.label, chart.y.label) == ("time since mixing [h]", "run")
     rows = measured(run("a", (1, 2)))
-    TECHNIQUE.figure(open_ended, rows, TECHNIQUE.summarise(rows, context()))
-    assert spans(open_ended) == []
+    assert windows(TECHNIQUE.figure(rows, TECHNIQUE.summarise(rows, context()))) == []

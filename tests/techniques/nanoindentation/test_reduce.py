@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from deamat.core.arrays import FloatArray
+from deamat.core.chart import Line
 from deamat.core.config import load_config
 from deamat.core.instruments import Machine
 from deamat.core.quantity import Quantity
@@ -24,7 +25,6 @@ from deamat.techniques.nanoindentation import TECHNIQUE
 from deamat.techniques.nanoindentation.result import Indent
 from deamat.twin.nanoindentation import SPECIMENS, TOO_SOFT, nanoindentation_part, true_modulus
 from tests.conftest import ROOT
-from tests.techniques.drawn import blank, by_label, lines
 from tests.techniques.nanoindentation.indents import (
     BERKOVICH,
     CONTEXT,
@@ -42,6 +42,7 @@ from tests.techniques.nanoindentation.indents import (
     specimen,
     twin,
 )
+from tests.techniques.shown import curves, marks
 
 # --- values
 
@@ -235,22 +236,20 @@ def test_a_mean_keeps_the_shared_part_whole() -> None:
 
 def test_the_figure_shows_curve_and_law_from_contact() -> None:
     assert TECHNIQUE.figure is not None
-    axes = blank()
-    TECHNIQUE.figure(axes, [reduce(SPHERE, SPHERE_CURVE)], Summary(()))
-    (_, load), (depth, fitted) = lines(axes)
-    assert depth[-1] == pytest.approx(4.0, rel=1e-5)
-    assert fitted[-1] == pytest.approx(float(load.max()), rel=1e-4)
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("depth from contact [um]", "load [uN]")
-    stiff = blank()
-    TECHNIQUE.figure(stiff, [reduce(BERKOVICH, pyramid(7e10, 3e-3))], Summary(()))
-    assert len(lines(stiff)) == 1
-    refused = blank()
+    chart = TECHNIQUE.figure([reduce(SPHERE, SPHERE_CURVE)], Summary(()))
+    (curve,), (law,) = curves(chart), marks(chart, Line)
+    assert law.x[-1] == pytest.approx(4.0, rel=1e-5)
+    assert law.y[-1] == pytest.approx(float(curve.y.max()), rel=1e-4)
+    assert (chart.x.label, chart.y.label) == ("depth from contact [µm]", "load [µN]")
+    stiff = TECHNIQUE.figure([reduce(BERKOVICH, pyramid(7e10, 3e-3))], Summary(()))
+    assert len(curves(stiff)) == 1
+    assert marks(stiff, Line) == []
     bare = reduce(({}, SPHERE[1]), SPHERE_CURVE)
     nothing = TECHNIQUE.reduce(specimen(*SPHERE), None, CONTEXT)
-    TECHNIQUE.figure(refused, [bare, nothing], Summary(()))
-    assert lines(refused)[0][0] == pytest.approx(1e6 * SPHERE_CURVE[0])
-    assert list(by_label(refused)) == ["n2, refused: as read"]
-    assert stiff.get_xlabel() == "depth from contact [nm]"
+    (refused,) = curves(TECHNIQUE.figure([bare, nothing], Summary(())))
+    assert refused.x == pytest.approx(1e6 * SPHERE_CURVE[0])
+    assert refused.name == "n2, refused: as read"
+    assert stiff.x.label == "depth from contact [nm]"
 
 
 # --- a real indent

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from deamat.core.chart import Curves, Points
 from deamat.core.config import validate
 from deamat.core.errors import ConfigError
 from deamat.core.instruments import LcrAccuracy, Machine
@@ -34,6 +35,7 @@ from tests.techniques.permittivity.films import (
     recording,
     reduce,
 )
+from tests.techniques.shown import marks
 
 
 @pytest.mark.parametrize("mode", PAIRS)
@@ -286,22 +288,23 @@ def test_refusals_reach_the_summary() -> None:
 
 
 def test_the_figure_shows_every_film_and_the_cards_value() -> None:
-    from matplotlib.figure import Figure
-
     measured = [dispersive(0.05), dispersive(0.05, 1.02)]
     summary = TECHNIQUE.summarise(measured, context())
-    page = Figure()
-    axes = page.add_subplot()
     assert TECHNIQUE.figure is not None
-    TECHNIQUE.figure(axes, measured, summary)
-    right = next(a for a in page.axes if a is not axes)
-    assert axes.get_xscale() == "log"
-    assert axes.get_xlabel() == "frequency [Hz]"
-    assert axes.get_ylabel() == "relative permittivity [1]"
-    assert right.get_ylabel() == "loss tangent [1] (dotted)"
-    assert len(right.lines) == 2
-    drawn = np.asarray(axes.lines[0].get_ydata())
-    assert np.array_equal(drawn, measured[0].curve["relative_permittivity"])
-    assert "mean of 2 at 10 Hz" in axes.get_legend_handles_labels()[1]
+    chart = TECHNIQUE.figure(measured, summary)
+    assert (chart.x.label, chart.x.spacing) == ("frequency [Hz]", "log")
+    assert chart.y.label == "relative permittivity [1]"
+    assert chart.right is not None
+    assert chart.right.label == "loss tangent [1] (dotted)"
+    left, right = marks(chart, Curves)
+    assert (left.right, right.right, len(right.curves)) == (False, True, 2)
+    assert np.array_equal(left.curves[0].y, measured[0].curve["relative_permittivity"])
+    value, loss = marks(chart, Points)
+    assert value.label == "permittivity, mean of 2 at 10 Hz"
+    record = next(r for r in summary.records if r.key == "loss_tangent")
+    assert loss.right
+    assert loss.y.tolist() == [record.quantity.value]
+    assert loss.low is not None
+    assert loss.low.tolist() == [record.ci95[0]]
     refused_film = reduce(recording(capacitor(2.63), over_range=(0,)))
-    TECHNIQUE.figure(Figure().add_subplot(), [refused_film], Summary(()))
+    assert marks(TECHNIQUE.figure([refused_film], Summary(())), Points) == []
