@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
-from deamat.estimators.rows import Sketch, shared_fraction
+from deamat.estimators.rows import Sketch, holders_of, shared_fraction
 
 _SUSPICIOUS = 0.05  # of the rows of the shorter file
 _MOST, _WHOLE = 0.4, 0.95
@@ -73,17 +73,13 @@ def find_copies(files: Sequence[File], noisy: Callable[[File], bool]) -> list[Co
 
 
 def _candidates(files: Sequence[File]) -> dict[tuple[int, int], float]:
-    holders: dict[bytes, list[int]] = defaultdict(list)
     by_bytes: dict[str, list[int]] = defaultdict(list)
     for at, file in enumerate(files):
         by_bytes[file.sha256].append(at)
-        runs = file.sketch.runs
-        for start in range(0, len(runs), 8):
-            holders[runs[start : start + 8]].append(at)
     counts = Counter(
         pair
-        for found in holders.values()
-        if 1 < len(found) <= _COMMON
+        for found in holders_of([file.sketch for file in files])
+        if len(found) <= _COMMON
         for pair in combinations(found, 2)
     )
     shared = {(i, j): shared_fraction(files[i].sketch, files[j].sketch) for i, j in counts}

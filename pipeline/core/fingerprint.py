@@ -12,7 +12,6 @@ its imports: otherwise the one list of all rooms would tie every room to every o
 
 from __future__ import annotations
 
-import ast
 import hashlib
 import re
 import sys
@@ -21,8 +20,9 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
+from deamat.core.import_statements import Import, imports_in
+
 _REQUIRED = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")
-_BY_NAME = frozenset({"import_module", "__import__"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +62,7 @@ class Sources:
     root: Path
     hashes: Mapping[str, str]
     _parsed: dict[str, tuple[frozenset[str], frozenset[str]]] = field(default_factory=dict)
+    _data: dict[str, list[str]] = field(default_factory=dict)
 
     def fingerprint(self, starts: Iterable[str], without: Iterable[str] = ()) -> Fingerprint:
         """Hash what some modules run.
@@ -128,45 +129,40 @@ class Sources:
             if self._file(module) is not None:  # a folder without `__init__` has nothing to count
                 yield module
 
-    def _data_beside(self, path: str) -> Iterator[str]:
-        folder = path.rpartition("/")[0]
-        return (
-            other
-            for other in self.hashes
-            if other.rpartition("/")[0] == folder and not other.endswith((".py", ".pyc"))
-        )
+    def _data_beside(self, path: str) -> list[str]:
+        if not self._data:
+            for other in self.hashes:
+                folder, _, name = other.rpartition("/")
+                mine = self._data.setdefault(folder, [])
+                if not name.endswith((".py", ".pyc")):
+                    mine.append(other)
+        return self._data.get(path.rpartition("/")[0], [])
 
     def _imports(self, module: str, path: str) -> tuple[frozenset[str], frozenset[str]]:
         """List the modules of the package that a module imports, and the other top-level names."""
         if module not in self._parsed:
-            tree = ast.parse((self.root / path).read_bytes(), path)
+            source = (self.root / path).read_text(encoding="utf-8")
             package = module if path.endswith("__init__.py") else module.rpartition(".")[0]
-            names = [name for node in _running(tree) for name in self._named(node, package)]
+            names = [name for one in imports_in(source) for name in self._named(one, package)]
             own = frozenset(name for name in names if self._file(name) is not None)
             foreign = {name.partition(".")[0] for name in names} - {self.name}
             self._parsed[module] = own, frozenset(foreign - sys.stdlib_module_names)
         return self._parsed[module]
 
-    def _named(self, node: ast.AST, package: str) -> Iterator[str]:
-        """Name what one statement or call imports."""
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            base = node.module or ""
-            if node.level:
-                above = package.split(".")[: len(package.split(".")) - node.level + 1]
-                base = ".".join([*above, *filter(None, [node.module])])
-            below = [f"{base}.{alias.name}" for alias in node.names]
-            submodules = [name for name in below if self._file(name) is not None]
-            yield from submodules
-            if len(submodules) < len(below):
-                yield base
-        elif isinstance(node, ast.Call) and _last_name(node.func) in _BY_NAME:
-            named = node.args[0] if node.args else None
-            if isinstance(named, ast.Constant) and isinstance(named.value, str):
-                yield named.value
-            else:
-                yield from self._below(package)
+    def _named(self, one: Import, package: str) -> Iterator[str]:
+        """Name the modules that one statement or call imports."""
+        if one.module is None:
+            yield from self._below(package)
+            return
+        base = one.module.lstrip(".")
+        if above := len(one.module) - len(base):
+            parts = package.split(".")
+            base = ".".join([*parts[: len(parts) - above + 1], *filter(None, [base])])
+        below = [f"{base}.{name}" for name in one.names]
+        submodules = [name for name in below if self._file(name) is not None]
+        yield from submodules
+        if len(submodules) < len(below) or not below:
+            yield base
 
     def _below(self, package: str) -> Iterator[str]:
         """Name every module in the folder of a package."""
@@ -175,25 +171,6 @@ class Sources:
             if path.startswith(folder) and path.endswith(".py"):
                 stem = path.removesuffix(".py").removesuffix("__init__").rstrip("/")
                 yield ".".join([self.name, *filter(None, stem.split("/"))])
-
-
-def _running(node: ast.AST) -> Iterator[ast.AST]:
-    """Walk over all that may run: what stands under `if TYPE_CHECKING:` never does."""
-    waiting = [node]
-    while waiting:
-        node = waiting.pop()
-        yield node
-        if isinstance(node, ast.If) and _last_name(node.test) == "TYPE_CHECKING":
-            waiting += node.orelse
-        else:
-            waiting += ast.iter_child_nodes(node)
-
-
-def _last_name(of: ast.expr) -> str:
-    """Return `import_module` of `importlib.import_module`, and of `import_module`."""
-    if isinstance(of, ast.Attribute):
-        return of.attr
-    return of.id if isinstance(of, ast.Name) else ""
 
 
 @cache
@@ -216,12 +193,14 @@ def libraries(names: frozenset[str]) -> tuple[tuple[str, str], ...]:
 
 
 _ABSENT = "absent"
+_BROUGHT_BY = {"simdjson": "pysimdjson"}  # spares asking every distribution what it brings
 
 
 def _distributions(module: str) -> list[str]:
     """Name the distributions that bring a module; mostly one of the same name."""
-    if _installed(_normal(module))[0] != _ABSENT:
-        return [_normal(module)]
+    name = _BROUGHT_BY.get(module, _normal(module))
+    if _installed(name)[0] != _ABSENT:
+        return [name]
     bringing = _packages()
     return [_normal(name) for name in bringing[module]] if module in bringing else [module]
 

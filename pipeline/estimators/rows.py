@@ -55,8 +55,21 @@ def sketch(columns: Sequence[FloatArray]) -> Sketch:
     for offset in range(1, _RUN):
         runs = _mixed(runs * _ODD + rows[offset : offset + count])
         moving &= rows[offset : offset + count] != rows[offset - 1 : offset - 1 + count]
-    told = np.unique(runs[moving])
+    told = _different(runs[moving])
     return Sketch(told[:_KEPT].astype("<u8").tobytes(), int(told.size))
+
+
+def holders_of(sketches: Sequence[Sketch]) -> list[list[int]]:
+    """List which sketches hold each hash that several of them hold, by their places."""
+    hashes = np.concatenate([np.zeros(0, np.uint64), *map(_hashes, sketches)])
+    owner = np.repeat(np.arange(len(sketches)), [len(one.runs) // 8 for one in sketches])
+    order = np.argsort(hashes, kind="stable")
+    hashes, owner = hashes[order], owner[order]
+    starts = np.flatnonzero(np.append(True, hashes[1:] != hashes[:-1]))
+    ends = np.append(starts[1:], hashes.size)
+    several = ends - starts > 1
+    pairs = zip(starts[several].tolist(), ends[several].tolist(), strict=True)
+    return [owner[start:end].tolist() for start, end in pairs]
 
 
 def shared_fraction(one: Sketch, other: Sketch) -> float:
@@ -104,6 +117,13 @@ def _quantum(column: FloatArray) -> float:
         if np.abs(units - np.rint(units)).max() < 1e-6 * 10.0 ** max(digits - 6, 0):
             return quantum
     return 0.0
+
+
+def _different(values: NDArray[np.uint64]) -> NDArray[np.uint64]:
+    """Sort and drop repeats; quicker than `np.unique`, which hashes first."""
+    values = np.sort(values)
+    kept: NDArray[np.uint64] = values[np.append(True, values[1:] != values[:-1])[: values.size]]
+    return kept
 
 
 def _hashes(of: Sketch) -> NDArray[np.uint64]:

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Annotated, Any, ClassVar, TypeVar
 
 from deamat.core.errors import CardError, MissingProperty
+from deamat.core.json_text import indented
 from deamat.core.kinds import CONDITIONS_KIND, ID, SAID, Kind
 from deamat.core.present import readable_record
 from deamat.core.quantity import Quantity
@@ -211,8 +212,7 @@ class MaterialCard:
 
     def to_json(self) -> bytes:
         """Return the bytes of the card's file: the same for the same content."""
-        text = json.dumps(self.to_document(), indent=2, ensure_ascii=False, allow_nan=False)
-        return (text + "\n").encode()
+        return indented(self.to_document(), 2)
 
     @classmethod
     def from_document(cls, document: Mapping[str, Any]) -> MaterialCard:

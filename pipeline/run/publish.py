@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
+from deamat.core.json_text import indented
 from deamat.core.ledger import Failure, FileEntry, Provenance
 from deamat.materials.card import Credit, MaterialCard
 from deamat.materials.curves import write_curves
@@ -214,7 +214,7 @@ def card_file(card: MaterialCard) -> bytes:
 
 
 def _as_json(entries: Sequence[FileEntry] | Sequence[Failure]) -> bytes:
-    return (json.dumps([asdict(entry) for entry in entries], indent=1) + "\n").encode()
+    return indented([asdict(entry) for entry in entries], 1)
 
 
 def _write(path: Path, data: bytes) -> Sequence[Failure]:

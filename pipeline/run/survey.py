@@ -27,6 +27,8 @@ from deamat.run.first_account import content_of, entry_of, is_register, manifest
 from deamat.run.folders import Input
 from deamat.run.other_folders import no_technique
 
+Owners = dict[str, dict[str, Specimen]]  # whose a file is, by its path and sheet
+
 
 @dataclass
 class Survey:
@@ -193,7 +195,7 @@ def _register(
                     reason=f"its register cannot be read: {error}",
                 )  # fmt: skip
         return
-    owners: dict[str, Specimen] = {}
+    owners: Owners = {}
     slips = list(register.errors)
     reasons = {exclusion.target: exclusion.reason for exclusion in config.exclusions.exclude}
     left_out: list[Excluded] = []
@@ -224,15 +226,12 @@ def _excluded(specimen: Specimen, reason: str) -> Excluded:
     )
 
 
-def _account_for_excluded(
-    left_out: Sequence[Excluded], owners: Mapping[str, Specimen], result: Survey
-) -> None:
+def _account_for_excluded(left_out: Sequence[Excluded], owners: Owners, result: Survey) -> None:
     """Exclude the files of rows that are left out, unless another row has the same one."""
     result.excluded += left_out
-    claimed = {specimen.file for specimen in owners.values()}
     for excluded in left_out:
         file = excluded.path
-        if file is None or file in claimed:
+        if file is None or file in owners:
             continue
         entry = result.entries.get(file, FileEntry(file, "", 0, "missing", "rejected"))
         role: Role = "missing" if entry.role == "missing" else "recording"
@@ -265,7 +264,7 @@ def _is_the_register(path: str, form: RegisterForm, technique: str, result: Surv
         raise RawFileError(path, reason, hint="keep one of them")
 
 
-def _claim(specimen: Specimen, result: Survey, owners: dict[str, Specimen]) -> bool:
+def _claim(specimen: Specimen, result: Survey, owners: Owners) -> bool:
     """Return a row its file, once; say whether the row can be measured.
 
     Raises
@@ -287,12 +286,13 @@ def _claim(specimen: Specimen, result: Survey, owners: dict[str, Specimen]) -> b
         result.entries[path] = replace(entry, reason=reason)
         return False
     sheet = specimen.notes.get(SHEET, "")
-    same = [path, f"{path}#{sheet}"] if sheet else [k for k in owners if k.split("#")[0] == path]
-    first = next((owners[key] for key in same if key in owners), None)
+    taken = owners.setdefault(path, {})
+    rivals = ("", sheet) if sheet else tuple(taken)
+    first = next((taken[one] for one in rivals if one in taken), None)
     if first is not None:
         reason = f"its file is that of {first.id} in line {first.line} already"
         raise RawFileError(specimen.register, reason, specimen.line, None, specimen.id)
-    owners[f"{path}#{sheet}" if sheet else path] = specimen
+    taken[sheet] = specimen
     result.entries[path] = replace(entry, role="recording")
     return entry.status == "used"
 
@@ -300,7 +300,7 @@ def _claim(specimen: Specimen, result: Survey, owners: dict[str, Specimen]) -> b
 def _reject_rows(
     register: str,
     slips: Sequence[tuple[str | None, RawFileError]],
-    owners: Mapping[str, Specimen],
+    owners: Owners,
     result: Survey,
 ) -> None:
     """Reject the data file of each bad row, or the register where that is none of its own."""

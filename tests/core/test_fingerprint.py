@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import ast
 import hashlib
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+import deamat
 from deamat.core.fingerprint import Sources, libraries
+from deamat.core.import_statements import Import, imports_in
 
 _FILES = {
     "__init__.py": "from toy.rooms import LIST\n",
@@ -114,3 +118,31 @@ def test_libraries_stand_on_others() -> None:
     assert {"matplotlib", "numpy", "pillow", "pysimdjson"} <= set(found)
     assert found["absent_library"] == "absent"
     assert "pytest" not in found  # an extra of some of them
+
+
+def test_what_the_text_shows_is_what_the_grammar_finds_in_every_module() -> None:
+    for path in sorted(Path(deamat.__file__).parent.rglob("*.py")):
+        source = path.read_text("utf-8")
+        assert set(imports_in(source)) == set(_by_grammar(source)), path
+
+
+def _by_grammar(source: str) -> Iterator[Import]:
+    waiting: list[ast.AST] = [ast.parse(source)]
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, ast.Import):
+            yield from (Import(alias.name) for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            names = tuple(alias.name for alias in node.names)
+            yield Import("." * node.level + (node.module or ""), names)
+        elif isinstance(node, ast.Call) and _last(node.func) in ("import_module", "__import__"):
+            named = node.args[0]
+            yield Import(str(named.value) if isinstance(named, ast.Constant) else None)
+        if isinstance(node, ast.If) and _last(node.test) == "TYPE_CHECKING":
+            waiting += node.orelse
+        else:
+            waiting += ast.iter_child_nodes(node)
+
+
+def _last(node: ast.expr) -> str:
+    return ast.unparse(node).rpartition(".")[2]
