@@ -12,6 +12,7 @@ import click
 
 from deamat import __version__
 from deamat.commands.check import check
+from deamat.commands.learn import learn
 from deamat.commands.options import (
     INTERNAL,
     REJECTED,
@@ -42,6 +43,7 @@ def cli() -> None:
 
 
 cli.add_command(check)
+cli.add_command(learn)
 
 
 @cli.command("all")

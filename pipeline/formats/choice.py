@@ -12,7 +12,7 @@ from deamat.formats.durations import clock_unit
 from deamat.formats.structure import Heading
 from deamat.formats.vocabulary import ASKED, Asked, meaning_among, plain_label, vocabulary
 
-_HERTZ_PER_RADIAN = 1.0 / (2.0 * math.pi)
+HERTZ_PER_RADIAN = 1.0 / (2.0 * math.pi)
 # pure numbers by their nature; a strain may be in %
 _WITHOUT_UNIT = frozenset(
     ("loss_tangent", "relative_permittivity", "relative_loss_index", "electric_modulus",
@@ -44,6 +44,7 @@ class Choice:
     faults : why nothing complete was found; empty where it was
     labelled : how many columns have a label that the technique knows
     twins : are several columns the same quantity?
+    decimal : mark that is declared, empty where the cells tell it
     """
 
     heading: Heading
@@ -53,6 +54,7 @@ class Choice:
     faults: tuple[str, ...]
     labelled: int
     twins: bool = False
+    decimal: str = ""
 
     @property
     def used(self) -> tuple[Taken, ...]:
@@ -136,7 +138,7 @@ def _by_label(columns: Sequence[_Column], name: str, twins: dict[str, str]) -> T
         first, second = (columns[at].label for _, at in ranked[:2])
         twins[name] = (
             f"duplicate column: columns {ranked[0][1] + 1} and {ranked[1][1] + 1} ({first}, "
-            f"{second}) are both {_said(name)}"
+            f"{second}) are both {quantity_in_words(name)}"
         )
         return None
     return _taken(columns, ranked[0][1], name)
@@ -163,7 +165,7 @@ def _taken(columns: Sequence[_Column], at: int, name: str, *, by_unit: bool = Fa
     clock = clock_unit(column.unit)  # its times are read as seconds
     _, factor, offset = si_factor("s" if clock else column.unit or "1")
     if name == "frequency_Hz" and column.si == "rad/s":
-        factor *= _HERTZ_PER_RADIAN
+        factor *= HERTZ_PER_RADIAN
     if name in _NEGATED and plain_label(column.label)[:1] in ("-", "\u2212"):
         factor = -factor
     return Taken(name, at, column.label, column.unit, factor, offset, by_unit)
@@ -202,32 +204,34 @@ def _faults(columns: Sequence[_Column], asked: Asked, known: dict[str, Taken]) -
     )
     missing = [name for name in need if name not in known]
     if len(asked.needs) > 2 and not any(map(hinted, missing)):
-        pairs = "; or ".join(" and ".join(map(_said, names[1:])) for names in asked.needs)
-        return [f"beside {_said(need[0])} it needs {pairs}"] if need[0] in known else [
-            f"no column is the {_said(need[0])}"
+        pairs = "; or ".join(
+            " and ".join(map(quantity_in_words, names[1:])) for names in asked.needs
+        )
+        return [f"beside {quantity_in_words(need[0])} it needs {pairs}"] if need[0] in known else [
+            f"no column is the {quantity_in_words(need[0])}"
         ]  # fmt: skip
     return [_missing(columns, name) for name in missing]
 
 
 def _missing(columns: Sequence[_Column], name: str) -> str:
-    si = vocabulary()[name].unit
+    si, words = vocabulary()[name].unit, quantity_in_words(name)
     for column in columns:
         if name in column.means:
             if column.fault:
                 return column.fault
             if not column.written:
-                return f"no unit stands beside {column.label!r} ({_said(name)})"
-            return f"{column.label!r} is in {column.written}, which is no unit of {_said(name)}"
+                return f"no unit stands beside {column.label!r} ({words})"
+            return f"{column.label!r} is in {column.written}, which is no unit of {words}"
     doubtful = [f"{c.label} [{c.written}]" for c in columns if c.si == si and not c.means]
     if len(doubtful) > 1 and si != "1":
         return (
-            f"which column is the {_said(name)}? {', '.join(doubtful)} have its unit; name the "
-            "column after what it is"
+            f"which column is the {words}? {', '.join(doubtful)} have its unit; name the column "
+            "after what it is"
         )
-    return f"no column is the {_said(name)} (unit of {si})"
+    return f"no column is the {words} (unit of {si})"
 
 
-def _said(name: str) -> str:
+def quantity_in_words(name: str) -> str:
     """`shear_rate_per_s` in words: `shear rate`."""
     unit = vocabulary()[name].unit
     ending = (

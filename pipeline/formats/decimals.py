@@ -54,8 +54,16 @@ def decimal_mark(cells: Iterable[str]) -> str:
     return "," if comma and not point else "."
 
 
-def sole_decimal_mark(block: bytes) -> str:
-    """Return the decimal mark of plain numbers, without commas between fields; empty if unsure."""
+def sole_decimal_mark(block: bytes, declared: str = "") -> str:
+    """Return the decimal mark of plain numbers, without commas between fields; empty if unsure.
+
+    Parameters
+    ----------
+    declared : the mark that is declared, empty where none is
+    """
+    if declared:
+        other = b"." if declared == "," else b","
+        return "" if other in block else declared  # the other one may part thousands
     if b"," not in block:
         return "."
     return "," if b"." not in block and _FRACTION.search(block) else ""

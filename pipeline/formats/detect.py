@@ -7,9 +7,12 @@ from __future__ import annotations
 
 import difflib
 from collections import Counter
+from collections.abc import Sequence
 
 from deamat.core.errors import ConfigError, RawFileError
 from deamat.formats import FORMATS, plain, workbook
+from deamat.formats.declared import format_of, is_declared
+from deamat.formats.exports import EXPORTS_FILE, Export
 from deamat.formats.format import Format
 from deamat.formats.rawfile import Head, RawFile
 
@@ -29,6 +32,7 @@ _BINARY = {
     b"\x1f\x8b\x08\x00": _COMPRESSED,
     b"\x1f\x8b\x08\x08": _COMPRESSED,
 }
+KNOWN_FORMS = (*(form.name for form in FORMATS), plain.FORMAT.name, workbook.FORMAT.name)
 _DELIMITERS = {"tab": "\t", "semicolon": ";", "comma": ","}
 
 
@@ -37,8 +41,12 @@ def is_binary(data: bytes) -> bool:
     return data[:4] in _BINARY
 
 
-def detect(file: RawFile) -> Format:
+def detect(file: RawFile, exports: Sequence[Export] = ()) -> Format:
     """Return the one format that recognises the head of a file, or that of any plain table.
+
+    Parameters
+    ----------
+    exports : forms that the laboratory declared: they go before those that the program knows
 
     Raises
     ------
@@ -51,6 +59,15 @@ def detect(file: RawFile) -> Format:
             return workbook.FORMAT
         what, hint = _BINARY[start]
         raise RawFileError(file.path, f"no format recognises this file: it is {what}", hint=hint)
+    own = [export.name for export in exports if is_declared(file, export)]
+    if len(own) == 1:
+        return by_name(own[0], exports)
+    if own:
+        raise RawFileError(
+            file.path, f"several forms of config/{EXPORTS_FILE} recognise this file: "
+            f"{', '.join(own)}", 1, value=_line(file, 1)[:60],
+            hint="name the one that is meant in the register's `format` column",
+        )  # fmt: skip
     matching = file.once(_recognising)
     if len(matching) == 1:
         return matching[0] if _is_for(matching[0], file) else _plain_or(matching[0], file)
@@ -99,17 +116,18 @@ def _recognising(head: Head) -> tuple[Format, ...]:
     return tuple(form for form in FORMATS if form.delimiter in text and form.recognises(head))
 
 
-def by_name(name: str) -> Format:
-    """Return the format that a register names.
+def by_name(name: str, exports: Sequence[Export] = ()) -> Format:
+    """Return the format that a register names, one that the laboratory declared among them.
 
     Raises
     ------
     ConfigError : there is no such format; names the nearest one
     """
-    for form in (*FORMATS, plain.FORMAT, workbook.FORMAT):
+    forms = (*FORMATS, plain.FORMAT, workbook.FORMAT, *map(format_of, exports))
+    for form in forms:
         if form.name == name:
             return form
-    names = [form.name for form in (*FORMATS, plain.FORMAT, workbook.FORMAT)]
+    names = [form.name for form in forms]
     near = difflib.get_close_matches(name, names, n=1)
     hint = f"; did you mean {near[0]}?" if near else ""
     raise ConfigError(f"there is no format {name!r}; there are {', '.join(names)}{hint}")

@@ -102,6 +102,6 @@ def _cell(file: RawFile, line: str, number: int) -> dict[str, str]:
 
 
 FORMAT = Format(
-    _NAME, "Novocontrol WinDETA text with the cell's dimensions", _recognises, _read, "\t",
+    _NAME, "Novocontrol WinDETA text", _recognises, _read, "\t",
     ("permittivity",),
 )  # fmt: skip

@@ -152,7 +152,9 @@ def _values(
     split = _split(file, rows, choice, lines[: choice.heading.first])
     cells = {t.name: [normal(row[t.column]) for row in split] for t in choice.used}
     try:
-        decimal = decimal_mark(cell for t in choice.needed for cell in cells[t.name])
+        decimal = choice.decimal or decimal_mark(
+            cell for t in choice.needed for cell in cells[t.name]
+        )
     except Ambiguous as error:
         cell = str(error)
         raise RawFileError(
@@ -190,7 +192,7 @@ def _quick(
 ) -> tuple[dict[str, FloatArray], dict[str, str]] | None:
     """Read the columns that are used, if all cells of the needed ones are plain numbers."""
     blocks = {t.name: "\n".join(columns[t.column]).encode() for t in choice.used}
-    decimal = sole_decimal_mark(b"\n".join(blocks[t.name] for t in choice.needed))
+    decimal = sole_decimal_mark(b"\n".join(blocks[t.name] for t in choice.needed), choice.decimal)
     if not decimal:
         return None
     values, dropped = {}, {}

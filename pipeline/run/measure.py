@@ -19,6 +19,7 @@ from deamat.core.quantity import Quantity
 from deamat.core.recording import Specimen
 from deamat.core.records import Condition, Law, Measurement, PropertyRecord, Summary
 from deamat.core.technique import AnyTechnique, Context
+from deamat.formats.exports import Export
 from deamat.run.boundary import FAILED, attempt
 from deamat.run.build_cache import STALE, BuildCache, digest, key_of
 from deamat.run.folders import Folders
@@ -91,6 +92,7 @@ class RunContext:
     stale : those among them that a dry run only knows from an earlier run
     unmade : campaign, material and key of what there will be, and a dry run knows nothing of
     failures : internal errors so far
+    exports : forms that the laboratory declared in `config/exports.toml`
     """
 
     folders: Folders
@@ -106,6 +108,7 @@ class RunContext:
     stale: list[PropertyRecord | Law] = field(default_factory=list)
     unmade: set[tuple[str, str, str]] = field(default_factory=set)
     failures: list[Failure] = field(default_factory=list)
+    exports: tuple[Export, ...] = ()
 
     def fail(self, failure: Failure) -> str:
         """Note an internal error; returns what stands for the key of the thing not made."""
@@ -257,12 +260,13 @@ def _tasks(technique: AnyTechnique, run: RunContext) -> Iterator[tuple[str, dict
             sure = needs_met(technique, specimen, run.sure(given))
             awaited = run.awaits(place, technique) or sure != found
             info = survey.campaign.info
+            exports = _exports_for(specimen, run.exports)
             task = Task(
                 run.folders.raw, specimen, Context(config, machine, found, info.timezone),
                 entry.sha256 if entry else None,
                 changed=entry is not None and entry.manifest == "changed",
                 registered=entry is None or entry.manifest != "extra",
-                ends_open=info.ends_open, stated_units=survey.stated_units,
+                ends_open=info.ends_open, stated_units=survey.stated_units, exports=exports,
             )  # fmt: skip
             subject = task.subject
             parts = {
@@ -273,10 +277,20 @@ def _tasks(technique: AnyTechnique, run: RunContext) -> Iterator[tuple[str, dict
                 "needs": STALE if awaited else digest(sorted(found.items())),
                 **run.stages.parts(f"measurement {technique.key}"),
             }  # fmt: skip
+            if exports:
+                versions = {export.name: export.version for export in exports}
+                parts["config/exports.toml"] = digest(versions)
             if entry:
                 parts["file"] = entry.sha256
                 parts["manifest"] = entry.manifest
             yield subject, parts, task
+
+
+def _exports_for(specimen: Specimen, exports: Sequence[Export]) -> tuple[Export, ...]:
+    """Return the declared forms that may read a specimen's file: the one named, or all that fit."""
+    if specimen.format is not None:
+        return tuple(export for export in exports if export.name == specimen.format)
+    return tuple(e for e in exports if specimen.file and specimen.technique in e.form.techniques)
 
 
 def needs_met(

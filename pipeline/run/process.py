@@ -19,6 +19,8 @@ from deamat.core.errors import ConfigError
 from deamat.core.ledger import Failure, FileEntry, Provenance
 from deamat.core.slug import Spellings
 from deamat.core.technique import AnyTechnique
+from deamat.formats.detect import KNOWN_FORMS
+from deamat.formats.exports import EXPORTS_FILE, load_exports
 from deamat.run.boundary import attempt
 from deamat.run.build_cache import BuildCache, key_of
 from deamat.run.compare import compare
@@ -90,13 +92,25 @@ def process(
     inputs = hash_inputs(seen, folders, state, verify)
     hashes = {path: one.sha256 for path, one in inputs.items()}
     config = load_config(folders.config, {t.key: t.config for t in TECHNIQUES.values()})
+    exports = load_exports(folders.config, KNOWN_FORMS)
+    if declared := hashes.get(f"config/{EXPORTS_FILE}"):
+        config = replace(config, files={**config.files, EXPORTS_FILE: declared})
     surveys, broken, ignored = look_at_raw(folders, inputs, config)
     insist_on_targets(config.exclusions.exclude, surveys, [failure.subject for failure in broken])
     cache = BuildCache(state)
     stages = find_stages(TECHNIQUES, hashes, state)
     with Workers(workers) as pool:
         run = RunContext(
-            folders, config, stages, surveys, cache, pool, progress, dry, failures=broken
+            folders,
+            config,
+            stages,
+            surveys,
+            cache,
+            pool,
+            progress,
+            dry,
+            failures=broken,
+            exports=exports,
         )
         measured, groups = measure_all(TECHNIQUES, run)
         files = _account(surveys, measured)

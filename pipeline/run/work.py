@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -18,6 +18,7 @@ from deamat.core.register import ENCODING, SHEET
 from deamat.core.technique import Context
 from deamat.formats.detect import by_name, detect
 from deamat.formats.documentation import contradictions
+from deamat.formats.exports import Export
 from deamat.formats.format import Format
 from deamat.formats.rawfile import RawFile, read_raw
 from deamat.run.boundary import attempt, killed
@@ -35,6 +36,7 @@ class Task:
     ----------
     sha256 : of its file as planned; a file that changed since is an error, not a surprise
     changed : file content differs from the manifest
+    exports : forms that the laboratory declared for the technique
     """
 
     raw: Path
@@ -45,6 +47,7 @@ class Task:
     registered: bool
     ends_open: bool
     stated_units: Mapping[str, str]
+    exports: tuple[Export, ...] = ()
 
     @property
     def subject(self) -> str:
@@ -111,7 +114,7 @@ def _read(task: Task, path: str) -> Recording:
     )  # fmt: skip
     if file.sha256 != task.sha256:
         raise RawFileError(path, "the file changed while it was being read", hint="run again")
-    recording = _format(task.specimen, file).read(file)
+    recording = _format(task.specimen, file, task.exports).read(file)
     _insist_on_scale(recording)
     if task.changed:
         campaign = task.specimen.campaign
@@ -144,12 +147,12 @@ def _insist_on_scale(recording: Recording) -> None:
             raise RawFileError(source.path, reason, line, hint="restore the file or exclude it")
 
 
-def _format(specimen: Specimen, file: RawFile) -> Format:
+def _format(specimen: Specimen, file: RawFile, exports: Sequence[Export]) -> Format:
     """The format that the register names, or the one that the file shows."""
     if specimen.format is None:
-        return detect(file)
+        return detect(file, exports)
     try:
-        return by_name(specimen.format)
+        return by_name(specimen.format, exports)
     except ConfigError as error:
         raise RawFileError(
             specimen.register, str(error), specimen.line, value=specimen.format

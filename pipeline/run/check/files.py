@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -17,7 +18,8 @@ from deamat.core.instruments import Instruments
 from deamat.core.ledger import Failure
 from deamat.core.recording import Recording
 from deamat.core.register import ENCODING, REGISTER_FILES, SHEET, split_sheet
-from deamat.formats.detect import by_name, detect, is_binary
+from deamat.formats.detect import KNOWN_FORMS, by_name, detect, is_binary
+from deamat.formats.exports import load_exports
 from deamat.formats.format import Format
 from deamat.formats.rawfile import RawFile, read_raw
 from deamat.formats.vocabulary import ASKED
@@ -40,12 +42,13 @@ def check_files(paths: Sequence[Path], asked: Asked) -> Iterator[Checked]:
     ConfigError : the configuration does not hold, or there is no such technique or format
     """
     config = _config(asked.config)
+    asked = replace(asked, exports=load_exports(asked.config, KNOWN_FORMS))
     if asked.technique and asked.technique not in TECHNIQUES:
         raise ConfigError(
             f"no technique is called {asked.technique!r}; there are {', '.join(TECHNIQUES)}"
         )
     if asked.format:
-        by_name(asked.format)
+        by_name(asked.format, asked.exports)
     for path in paths:
         for one in _below(path):
             checked = attempt("check", str(one), (str(one),), partial(_check, one, asked, config))
@@ -99,7 +102,7 @@ def _check(path: Path, asked: Asked, config: Config) -> Checked:
         if technique or _fits(key, recording):
             found[key] = recording
     if not found:
-        return _unread(file, technique, faults)
+        return _unread(file, technique, faults, asked)
     by_label = {key: one for key, one in found.items() if not _by_unit(one)}
     found = by_label or found
     return _read_well(file, found, asked, place, config)
@@ -112,7 +115,11 @@ def _read(file: RawFile, asked: Asked, place: Place, config: Config) -> Recordin
         said = rows[0].notes
         within = file.place or said.get(SHEET, "")
         file = replace(file, place=within, declared=said.get(ENCODING, ""))
-    return (by_name(named) if named else detect(file)).read(file)
+    return _form_of(file, named, asked).read(file)
+
+
+def _form_of(file: RawFile, named: str | None, asked: Asked) -> Format:
+    return by_name(named, asked.exports) if named else detect(file, asked.exports)
 
 
 def _by_unit(recording: Recording) -> bool:
@@ -127,20 +134,22 @@ def _fits(technique: str, recording: Recording) -> bool:
     return any(all(name in columns for name in need) for need in ASKED[technique].needs)
 
 
-def _unread(file: RawFile, technique: str, errors: Sequence[RawFileError]) -> Checked:
+def _unread(file: RawFile, technique: str, errors: Sequence[RawFileError], asked: Asked) -> Checked:
     """Say all that is wrong with a file, and which form it comes nearest to."""
     try:
-        form = detect(replace(file, technique=technique))
+        form = _form_of(replace(file, technique=technique), asked.format or None, asked)
         form.read(replace(file, technique=technique))
         error = RawFileError(file.path, "it holds nothing that a technique looks at")
         nearest = f"{form.name} ({form.title})"
     except RawFileError as fault:
         error, nearest = fault, ""
+    hint = error.hint
     if not nearest and not error.column and not is_binary(file.data):
         nearest = nearest_form(file) or table_found(file)
+        hint += f"; or declare its form: deamat learn {shlex.quote(file.path)}"
     faults = dict.fromkeys([_said(error), *(map(_said, errors) if technique else ())])
     return Checked(
-        file.path, read=False, faults=tuple(faults), hint=error.hint, nearest=nearest,
+        file.path, read=False, faults=tuple(faults), hint=hint, nearest=nearest,
         encoding=_encoding(file),
     )  # fmt: skip
 
@@ -170,7 +179,7 @@ def _read_well(
         reading_of(key, recording, asked, place, config) for key, recording in found.items()
     )
     measured = tuple(reading for reading in readings if reading.measured)
-    form = _form(source.reader)
+    form = _form(source.reader, asked)
     return Checked(
         file.path,
         read=True,
@@ -186,9 +195,9 @@ def _read_well(
     )
 
 
-def _form(reader: str) -> Format | None:
+def _form(reader: str, asked: Asked) -> Format | None:
     try:
-        return by_name(reader.split(",")[0])
+        return by_name(reader.split(",")[0].split(" (")[0], asked.exports)
     except ConfigError:
         return None
 

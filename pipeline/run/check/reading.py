@@ -13,6 +13,7 @@ from deamat.core.recording import Recording, Specimen
 from deamat.core.records import MeasuredValue, Refusal
 from deamat.core.register_columns import usual_column
 from deamat.core.technique import AnyTechnique, Context
+from deamat.formats.exports import Export
 from deamat.run.check.curves import bare_values, curve_of
 from deamat.run.check.found import Reading, Value
 from deamat.run.check.row import OPTIONS, Place, of_options, registered
@@ -29,12 +30,14 @@ class Asked:
     format : name of a reader, empty to detect it
     columns : register columns with their cells (`diameter_mm`, `28.6`)
     config : folder, which need not be there
+    exports : forms that it declares
     """
 
     technique: str
     format: str
     columns: Mapping[str, str]
     config: Path
+    exports: tuple[Export, ...] = ()
 
 
 def reading_of(
