@@ -81,8 +81,18 @@ def find_slack(strain: FloatArray, stress: FloatArray, window: float) -> Slack |
         return None
     near = np.flatnonzero(rss <= rss[best] + noise2)
     step = float(places[1] - places[0])
-    width = max(0.5 * float(near[-1] - near[0]), 1.0 / math.sqrt(3.0)) * step
-    return Slack(place, width, before, after)
+    # the grid's part, and the scatter of the place beside level, slopes and turn: of a sharp hinge
+    # by linear propagation, of a rounder one by where the sum of squares rises
+    scatter = max(_scatter(x, place, turn, noise2), 0.5 * float(near[-1] - near[0]) * step)
+    return Slack(place, math.hypot(scatter, step / math.sqrt(3.0)), before, after)
+
+
+def _scatter(x: FloatArray, place: float, turn: float, noise2: float) -> float:
+    """Standard deviation of the place of a hinge whose level, slope and turn are free as well."""
+    ones, behind = np.ones(x.size), np.asarray(x > place, dtype=np.float64)
+    basis, _ = np.linalg.qr(np.stack([ones, x, behind * (x - place)], axis=1))
+    alone = behind - basis @ (basis.T @ behind)
+    return math.sqrt(noise2 / float(alone @ alone)) / abs(turn)
 
 
 def _looks_taut(strain: FloatArray, stress: FloatArray, window: float) -> bool:
