@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from deamat.core.arrays import FloatArray
+from deamat.estimators.curves.noise import noise_sd
 
 End = Literal["broke", "reversed", "stopped"]
 
@@ -112,7 +113,7 @@ def find_slip(strain: FloatArray, stress: FloatArray, last: int) -> Slip | None:
     greatest = float(y.max())
     if fall.max() <= _SLIP * _SLIPPABLE * greatest:  # the usual test, at a tenth of the cost
         return None
-    noise = float(np.median(np.abs(np.diff(y, 2)))) * 1.4826 / np.sqrt(6.0)
+    noise = noise_sd(y)
     forward = np.diff(x) >= 0.0
     lost = np.maximum.accumulate(y)[:-1] - y[1:]
     sudden = (fall > np.maximum(_SLIP * np.abs(y[:-1]), 8.0 * noise)) & forward

@@ -10,6 +10,7 @@ import numpy as np
 
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
+from deamat.estimators.curves.noise import noise_sd
 
 Zero = Literal["at contact", "absolute"]
 
@@ -84,7 +85,7 @@ def zero_of_position(strain: FloatArray, stress: FloatArray) -> Zero:
     if first < 0.0:
         return _zero_of_approach(strain, stress, stiffness)
     expected = stiffness * first
-    noise = _noise(stress[:early])
+    noise = noise_sd(stress[:early])
     if expected <= 4.0 * noise:
         return "at contact"
     found = (float(stress[0])) / expected
@@ -118,13 +119,6 @@ def _first_stiffness(strain: FloatArray, stress: FloatArray) -> tuple[int, float
     dx = x - x.mean()
     spread = float(dx @ dx)
     return count, float(dx @ y) / spread if spread > 0.0 else 0.0
-
-
-def _noise(y: FloatArray) -> float:
-    """Standard deviation of the noise of a smooth series, from its second differences."""
-    if y.size < 3:
-        return 0.0
-    return float(np.median(np.abs(np.diff(y, 2)))) * 1.4826 / math.sqrt(6.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,7 +159,7 @@ def zero_of_load(stress: FloatArray, hold: int, broken_at: int | None) -> LoadZe
     greatest = float(stress.max())
     if abs(before) <= 0.005 * greatest:
         return None
-    limit = max(0.005 * greatest, 4.0 * _noise(stress[: max(hold + 1, 12)]))
+    limit = max(0.005 * greatest, 4.0 * noise_sd(stress[: max(hold + 1, 12)]))
     if abs(before) <= limit:
         return None
     after = None if broken_at is None else float(np.median(stress[broken_at:]))

@@ -32,6 +32,7 @@ def plain_modulus(
         curve.nominal_stress_Pa[: pull.branch],
     )
     inside = window(strain, low, high, config.min_samples, config.unloading_tolerance)
+    pull.insist_on_channels(inside)
     line = rising_line(strain[inside], stress[inside], config.min_samples)
     flags = pull.flags + disagreement(curve, inside, config.own_columns_tolerance)
     if slack is not None:
@@ -79,6 +80,7 @@ def taut_modulus(
         config.min_samples,
         config.unloading_tolerance,
     )
+    pull.insist_on_channels(inside)
     x, y = strain[inside], stress[inside]
     line = rising_line(x, y, config.min_samples)
     bend = abs(curvature(x, y))  # where the curve bends, the slope goes with the zero of strain

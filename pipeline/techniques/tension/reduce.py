@@ -15,7 +15,7 @@ from deamat.techniques.shared.stress_strain import stress_strain
 from deamat.techniques.tension.config import ELONGATION, MODULI, STRENGTH, TensionConfig
 from deamat.techniques.tension.extensometer import by_extensometer
 from deamat.techniques.tension.moduli import plain_modulus, taut_modulus
-from deamat.techniques.tension.pull import Pull
+from deamat.techniques.tension.pull import pulled
 from deamat.techniques.tension.ultimate import elongation_at_break, tensile_strength
 
 
@@ -50,7 +50,7 @@ def reduce(
         return nothing_measured(specimen, (MODULI[0], STRENGTH, ELONGATION), error, recording)
     rupture = find_rupture(curve.nominal_strain, curve.nominal_stress_Pa, config.break_drop)
     branch = min(loading_branch(curve.nominal_strain), rupture.last + 1)
-    pull = Pull(curve, file, branch, rupture, file.flags + curve.flags)
+    pull = pulled(curve, file, branch, rupture)
     slope_conditions = conditions_of_test(specimen, config.window, gauge)
     conditions = conditions_of_test(specimen, None, gauge)
     values: list[MeasuredValue] = []

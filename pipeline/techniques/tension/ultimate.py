@@ -40,7 +40,8 @@ def tensile_strength(pull: Pull, conditions: Mapping[str, Condition]) -> Measure
     slip = find_slip(pull.curve.nominal_strain, stress, pull.rupture.last)
     flags = (*pull.flags, *_flags_of_end(pull), *_flags_of_zero(zero), *_flags_of_slip(slip))
     how = "greatest nominal stress"
-    return _value(pull, STRENGTH, strength, budget, how, top, conditions, flags)
+    limited = pull.rupture.end != "broke" or pull.load_limited
+    return _value(pull, STRENGTH, strength, budget, how, top, conditions, flags, limited)
 
 
 def elongation_at_break(pull: Pull, conditions: Mapping[str, Condition]) -> MeasuredValue:
@@ -50,7 +51,7 @@ def elongation_at_break(pull: Pull, conditions: Mapping[str, Condition]) -> Meas
     ------
     FitRefused : nothing was pulled, or the strip slid in its grips
     """
-    strain, last = pull.curve.nominal_strain, pull.rupture.last
+    strain, last = pull.curve.nominal_strain, pull.last
     _insist_on_load(float(pull.curve.nominal_stress_Pa[pull.rupture.maximum]))
     slip = find_slip(strain, pull.curve.nominal_stress_Pa, last)
     if slip is not None:
@@ -76,8 +77,13 @@ def elongation_at_break(pull: Pull, conditions: Mapping[str, Condition]) -> Meas
     how = "nominal strain of the last sample before the load collapses"
     if pull.rupture.end != "broke":
         how = "nominal strain at the greatest stress, without a break"
+    elif pull.load_limited:
+        how = "nominal strain where the load begins to hold one value"
     flags = (*pull.flags, *_flags_of_end(pull))
-    return _value(pull, ELONGATION, elongation, budget, how, last, conditions, flags)
+    limited = (
+        pull.rupture.end != "broke" or pull.load_limited or pull.position_held is not None
+    )  # fmt: skip
+    return _value(pull, ELONGATION, elongation, budget, how, last, conditions, flags, limited)
 
 
 def _value(
@@ -89,6 +95,7 @@ def _value(
     at: int,
     conditions: Mapping[str, Condition],
     flags: tuple[Flag, ...],
+    limited: bool,
 ) -> MeasuredValue:
     size = pull.curve.nominal_stress_Pa.size
     return MeasuredValue(
@@ -100,7 +107,7 @@ def _value(
         lines=line_span(pull.recording.source, size, at, at),
         diagnostics={"sample": at + 1, "samples": size},
         flags=flags + several_loadings(pull, "last"),
-        bound="exact" if pull.rupture.end == "broke" else "lower",
+        bound="lower" if limited else "exact",
     )
 
 

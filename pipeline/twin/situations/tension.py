@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
@@ -31,12 +32,14 @@ class _Pull:
     ----------
     travel_m, force_N : as recorded, shape (n,)
     modulus_Pa, elongation : of this strip
+    ceiling_N : above it the load channel shows nothing, noise included
     """
 
     travel_m: FloatArray
     force_N: FloatArray
     modulus_Pa: float
     elongation: float
+    ceiling_N: float = math.inf
 
 
 Distortion = Callable[[Generator, _Pull, float], _Pull]
@@ -70,6 +73,7 @@ def _made(key: str, distort: Distortion, rng: Generator, severity: float) -> Mad
         true = _pull(rng)
         seen = distort(rng, true, severity) if severity else true
         force = seen.force_N + rng.normal(0.0, _NOISE_N, seen.force_N.size)
+        force = np.minimum(force, seen.ceiling_N)
         name = f"{number}.csv"
         seconds = 0.05 * np.arange(force.size, dtype=np.float64)
         header = [("General : Comment", SYNTHETIC, "")]
@@ -165,6 +169,17 @@ def _cycles(_rng: Generator, pull: _Pull, part: float) -> _Pull:
     )
 
 
+def _saturated(_rng: Generator, pull: _Pull, missing: float) -> _Pull:
+    """The load cell, or what amplifies it, shows nothing above a part of the strength."""
+    return replace(pull, ceiling_N=(1.0 - missing) * float(pull.force_N.max()))
+
+
+def _frozen(_rng: Generator, pull: _Pull, missing: float) -> _Pull:
+    """The displacement stays where it is from a part of the elongation on."""
+    stuck = pull.elongation * (1.0 - missing) * _GAUGE_m
+    return replace(pull, travel_m=np.minimum(pull.travel_m, stuck))
+
+
 def _few_samples(_rng: Generator, pull: _Pull, every: float) -> _Pull:
     kept = np.arange(pull.travel_m.size) % round(every) == 0
     kept[101:] = True
@@ -238,6 +253,18 @@ SITUATIONS = (
         "Conditioning cycles come before the break.",
         "Modulus of the first loading, strength and elongation of the break.",
         ("several-loadings",), "elongation above the cycles, fraction", (0.03, 0.1, 0.3), _cycles,
+    ),
+    _situation(
+        "tension-saturated", _STRENGTH,
+        "The load cell saturates before the strip breaks.",
+        "Lower limits for strength and elongation, flagged.", ("held-channel",),
+        "strength not shown, fraction", (0.03, 0.1, 0.3), _saturated,
+    ),
+    _situation(
+        "tension-frozen", _ELONGATION,
+        "The displacement freezes before the strip breaks.",
+        "A lower limit, flagged.", ("held-channel",), "elongation not shown, fraction",
+        (0.03, 0.1, 0.3), _frozen,
     ),
     _situation(
         "tension-few-samples", _MODULUS,

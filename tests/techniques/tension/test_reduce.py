@@ -284,3 +284,39 @@ def test_soro_strips_refuse_the_modulus_and_give_the_rest(shared: Path) -> None:
             f"{100 * stretch:.5g}" == f"{float(want['elongation at max stress']['expected']):.5g}"
         )
         assert values["elongation_at_break"].flags[0].name == "no-break"
+
+
+def _broken(stress: FloatArray) -> tuple[FloatArray, FloatArray]:
+    strain = np.append(STRAIN, STRAIN[-1] + 5e-4 * np.arange(1, 4))
+    return strain, np.append(stress, [50.0, 20.0, 0.0])
+
+
+def test_a_saturated_load_cell_gives_lower_limits() -> None:
+    strain, stress = _broken(np.minimum(STRESS, 8e5))
+    values = by_key(pull(strain, stress))
+    assert values["tensile_modulus"].quantity.value == pytest.approx(5e5, rel=1e-9)
+    for key, limit in (("tensile_strength", 8e5), ("elongation_at_break", 1.6)):
+        assert values[key].bound == "lower"
+        assert values[key].quantity.value == pytest.approx(limit)
+    for value in values.values():
+        (flag,) = value.flags
+        assert flag.name == "held-channel"
+        assert flag.detail.startswith("the load holds 800 kPa from 160 % to 199.9 % strain")
+
+
+def test_a_frozen_displacement_gives_a_lower_limit_of_elongation() -> None:
+    strain, stress = _broken(STRESS)
+    values = by_key(pull(np.minimum(strain, 1.5), stress))
+    assert values["elongation_at_break"].bound == "lower"
+    assert values["elongation_at_break"].quantity.value == pytest.approx(1.5)
+    assert values["tensile_strength"].bound == "exact"
+    assert values["tensile_strength"].quantity.value == pytest.approx(STRESS[-1])
+    assert {f.name for v in values.values() for f in v.flags} == {"held-channel"}
+
+
+def test_a_load_that_sticks_within_the_window_refuses_the_modulus() -> None:
+    strain, stress = _broken(STRESS)
+    stress[5:18] = stress[5]
+    measured = pull(strain, stress)
+    (refusal,) = [r for r in measured.refusals if r.key == "tensile_modulus"]
+    assert refusal.reason.startswith("held-channel: the load holds one value from sample 6 to 18")
