@@ -61,7 +61,7 @@ def summaries(
             continue
         group = (specimen.material, *sorted(specimen.conditions.items()))
         groups[group].append(_measure(technique, specimen, campaign, config))
-    _, machine = config.instruments.machine("")
+    machine = config.instruments.machine("")
     for measurements in groups.values():
         known = campaign.laws.get(measurements[0].specimen.material, {})
         context = Context(config.methods[technique.key], machine, {}, laws=known)
@@ -71,7 +71,7 @@ def summaries(
 def _measure(
     technique: AnyTechnique, specimen: Specimen, campaign: Campaign, config: Config
 ) -> Measurement:
-    _, machine = config.instruments.machine(specimen.notes.get("instrument", ""))
+    machine = config.instruments.machine(specimen.notes.get("instrument", ""))
     found = needs_met(technique, specimen, campaign.records.get(specimen.material, []))
     recording = None
     if specimen.file is not None:

@@ -11,8 +11,8 @@ from pydantic import Field
 
 from deamat.actuator.strain import InPlane
 from deamat.core.config import validate
+from deamat.core.declared import Declared
 from deamat.core.errors import ConfigError
-from deamat.core.instruments import Declared
 from deamat.core.toml import parse_toml
 from deamat.core.units import to_si
 

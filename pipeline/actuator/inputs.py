@@ -16,6 +16,7 @@ from deamat.actuator.strip import Strip
 from deamat.core.quantity import Contribution
 from deamat.core.records import PropertyRecord
 from deamat.core.units import to_si
+from deamat.materials.correlation import cause_of, technique_of
 
 # Scale and shape of one Weibull fit err together. In large complete samples the correlation of
 # ln(scale) and shape is 0.2570 / sqrt(1.1087 x 0.6079) = 0.313 (Lawless, chapter 5).
@@ -106,18 +107,17 @@ def inputs_of(
 
 def _measured(record: PropertyRecord, *drives: str) -> Input:
     """Return a record of a card as an input that sets the fields `drives` of a strip."""
-    technique = record.origins[0].technique if record.origins else record.key
+    technique = technique_of(record)
     name = f"{record.key} of {record.material}"
     test = f"{technique} of {record.material}"
     lines = record.budget or (
         Contribution("independent", record.quantity.u_independent, False),
         Contribution("shared", record.quantity.u_shared, True),
     )
-    # One error of a campaign's technique, whichever materials it tested
     budget: list[Contribution] = []
     for c in lines:
         if c.shared:
-            budget.append(replace(c, source=f"{c.source} of {technique} in {record.campaign}"))
+            budget.append(replace(c, source=cause_of(c, record)))
         elif record.key in _JOINT:
             budget += _joint(c, test, _JOINT[record.key])
         else:

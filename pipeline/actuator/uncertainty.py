@@ -128,7 +128,7 @@ def combined(inputs: Sequence[Input], gradient: FloatArray | Sequence[float]) ->
     totals: dict[str, float] = {}
     for x, slope in zip(inputs, gradient, strict=True):
         for c in x.budget:
-            totals[c.source] = totals.get(c.source, 0.0) + slope * c.u
+            totals[c.source] = totals.get(c.source, 0.0) + slope * c.signed_u
     return math.sqrt(math.fsum(total**2 for total in totals.values()))
 
 
@@ -200,7 +200,7 @@ def _sample(inputs: Sequence[Input], draws: int, seed: int) -> dict[str, FloatAr
         for c in x.budget:
             if c.source not in drawn:
                 drawn[c.source] = rng.standard_normal(draws)
-            error += c.u * drawn[c.source]
+            error += c.signed_u * drawn[c.source]
         sigma = math.sqrt(math.log1p((x.u / x.value) ** 2))
         scale = sigma / x.u if x.u else 0.0
         values |= dict.fromkeys(x.drives, x.value * np.exp(scale * error - 0.5 * sigma**2))

@@ -30,23 +30,36 @@ def noted(summary: Summary, flags: Mapping[str, Sequence[Flag]]) -> Summary:
     )
 
 
-def with_circumstances(summary: Summary, specimens: Mapping[str, Specimen]) -> Summary:
-    """Say at each origin who tested it with what, when, how warm and how humid, as recorded."""
+def with_circumstances(
+    summary: Summary,
+    specimens: Mapping[str, Specimen],
+    calibrations: Mapping[str, tuple[str, ...]],
+) -> Summary:
+    """Say at each origin who tested it with what, when, how warm and how humid, as recorded.
+
+    Parameters
+    ----------
+    specimens : rows by specimen
+    calibrations : ids of those that held, by specimen
+    """
+
+    def told(entry: E) -> E:
+        origins = [
+            _circumstances(o, specimens[o.specimen], calibrations.get(o.specimen, ()))
+            if o.specimen in specimens
+            else o
+            for o in entry.origins
+        ]
+        return replace(entry, origins=tuple(origins))
+
     return replace(
         summary,
-        records=tuple(_told(record, specimens) for record in summary.records),
-        laws=tuple(_told(law, specimens) for law in summary.laws),
+        records=tuple(told(record) for record in summary.records),
+        laws=tuple(told(law) for law in summary.laws),
     )
 
 
-def _told(entry: E, specimens: Mapping[str, Specimen]) -> E:
-    return replace(entry, origins=tuple(_circumstances(o, specimens) for o in entry.origins))
-
-
-def _circumstances(origin: Origin, specimens: Mapping[str, Specimen]) -> Origin:
-    if origin.specimen not in specimens:
-        return origin
-    row = specimens[origin.specimen]
+def _circumstances(origin: Origin, row: Specimen, calibrations: tuple[str, ...]) -> Origin:
     tested = day_of(row, "tested_on")
     temperature, humidity = (row.numbers.get(name) for name in ("temperature_K", "humidity"))
     return replace(
@@ -56,6 +69,7 @@ def _circumstances(origin: Origin, specimens: Mapping[str, Specimen]) -> Origin:
         tested_on=None if tested is None else tested.isoformat(),
         temperature_K=None if temperature is None else temperature.value,
         humidity=None if humidity is None else humidity.value,
+        calibrations=calibrations,
     )
 
 

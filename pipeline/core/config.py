@@ -13,8 +13,9 @@ from typing import Any, Self, TypeVar
 
 from pydantic import BaseModel, Field, RootModel, ValidationError, field_validator, model_validator
 
+from deamat.core.declared import Declared
 from deamat.core.errors import ConfigError
-from deamat.core.instruments import Declared, Instruments
+from deamat.core.instruments import Instruments
 from deamat.core.slug import Spellings, nearest_slug, slug_fault
 from deamat.core.toml import parse_toml
 

@@ -4,22 +4,21 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from datetime import date
+from difflib import get_close_matches
 from fnmatch import fnmatchcase
-from typing import Annotated
+from typing import Annotated, Self
 
 import numpy as np
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, Field, model_validator
 
 from deamat.core.arrays import FloatArray
+from deamat.core.calibration import Calibration, CalibrationIds, Covered, held_on
+from deamat.core.declared import Declared
+from deamat.core.quantity import Contribution
 
 _LOW_IMPEDANCE_ohm = 500.0  # where the makers' tables change from k_a to k_b
 _LOW_FREQUENCY_Hz = 100.0
-
-
-class Declared(BaseModel):
-    """Base of every configuration section: unknown keys are errors, values never change."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 class Gauge(Declared):
@@ -27,6 +26,7 @@ class Gauge(Declared):
 
     u_reading_m: float = Field(default=1e-5, ge=0, description="repeatability, one per specimen")
     u_calibration_m: float = Field(default=1e-5, ge=0, description="shared by all specimens")
+    calibration: str | None = Field(default=None, description="id of its [calibrations.ID]")
 
 
 class LcrAccuracy(Declared):
@@ -141,19 +141,96 @@ class Machine(Declared):
     max_travel_m: float | None = Field(
         default=None, gt=0, description="reading at which the displacement ends, where it matters"
     )
+    calibration: CalibrationIds = Field(
+        default=(),
+        description="id of its [calibrations.ID], or several of which the day of the test chooses",
+    )
     source: str = "defaults: an ISO 7500-1 class 1 machine"
+
+    def shared_error(self, source: str, covered: Covered, u: float) -> Contribution:
+        """Return the line of a budget that is this machine's own error of a quantity.
+
+        Parameters
+        ----------
+        source : what to call it
+        u : standard uncertainty
+        """
+        del covered
+        return Contribution(source, u, shared=True)
+
+
+class Instrument(Machine):
+    """The machine of one specimen: its entry, and the calibrations that held on that day.
+
+    Parameters
+    ----------
+    entry : its name in the configuration; empty where no entry matches
+    held : what is calibrated, to the id of the calibration
+    """
+
+    entry: str = ""
+    held: Mapping[Covered, str] = Field(default_factory=dict)
+
+    def shared_error(self, source: str, covered: Covered, u: float) -> Contribution:
+        """Return the line of a budget, with its calibration; it says where limits are defaults."""
+        told = source if self.entry else f"{source}, default limits"
+        if covered not in self.held:
+            return Contribution(told, u, shared=True)
+        return Contribution(
+            told, u, shared=True, calibration=self.held[covered], calibrated=covered
+        )
 
 
 class Instruments(Declared):
-    """`config/instruments.toml`: machines by name, gauges by register column."""
+    """`config/instruments.toml`: machines by name, gauges by register column, calibrations by id.
+
+    Raises
+    ------
+    ValueError : a machine or gauge that names a calibration that is not there, or one of another
+        kind
+    """
 
     machines: Mapping[str, Machine] = Field(default_factory=dict)
     gauges: Mapping[str, Gauge] = Field(default_factory=dict)
+    calibrations: Mapping[str, Calibration] = Field(default_factory=dict)
 
-    def machine(self, instrument: str) -> tuple[str, Machine]:
-        """Find the machine that a register's `instrument` names; the class defaults otherwise."""
+    @model_validator(mode="after")
+    def _calibrated(self) -> Self:
+        for name, machine in self.machines.items():
+            for one in machine.calibration:
+                if self._known(one, f"machines.{name}").covers == ("length",):
+                    raise ValueError(f"machines.{name}: the calibration {one!r} is of a length")
+        for name, gauge in self.gauges.items():
+            if gauge.calibration is None:
+                continue
+            if "length" not in self._known(gauge.calibration, f"gauges.{name}").covers:
+                raise ValueError(
+                    f"gauges.{name}: the calibration {gauge.calibration!r} does not cover length"
+                )
+        return self
+
+    def _known(self, calibration: str, where: str) -> Calibration:
+        if calibration not in self.calibrations:
+            near = get_close_matches(calibration, self.calibrations, n=1, cutoff=0.0)
+            hint = f"; nearest: {near[0]!r}" if near else ""
+            raise ValueError(f"{where}: there is no [calibrations.{calibration}]{hint}")
+        return self.calibrations[calibration]
+
+    def machine(self, instrument: str, tested_on: date | None = None) -> Instrument:
+        """Find the machine that a register's `instrument` names; the class defaults otherwise.
+
+        Parameters
+        ----------
+        tested_on : chooses among its calibrations, whose uncertainties take the place of its own
+        """
         for name, machine in self.machines.items():
             pattern = f"*{machine.match.casefold()}*"
             if machine.match and fnmatchcase(instrument.casefold(), pattern):
-                return name, machine
-        return "default", Machine()
+                return self._on(tested_on, name, machine)
+        return Instrument()
+
+    def _on(self, day: date | None, name: str, machine: Machine) -> Instrument:
+        held = held_on(day, machine.calibration, self.calibrations)
+        found = {covered: self.calibrations[one].u_relative for covered, one in held.items()}
+        changes = {f"u_{covered}_calibration": u for covered, u in found.items() if u is not None}
+        return Instrument(**{**machine.model_dump(), **changes, "entry": name, "held": held})

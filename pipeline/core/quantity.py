@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar
 
 from deamat.core.errors import OutOfRange
@@ -22,6 +22,46 @@ class Contribution:
     source: Annotated[str, SAID, "What causes it, such as `load cell calibration`."]
     u: Annotated[float, UNCERTAINTY, "Standard uncertainty, in the unit of the value."]
     shared: Annotated[bool, "One error common to all specimens: it never averages away."]
+    calibration: Annotated[
+        str | None,
+        "Id of the calibration that the error is of: one error in all values that name it. Left "
+        "out where none is declared.",
+    ] = None
+    calibrated: Annotated[
+        str | None, "What of it: `force`, `voltage`, or the column of a gauge (`thickness`)."
+    ] = None
+    inverse: Annotated[
+        bool, "The value falls where what the error is of rises. Left out where it is false."
+    ] = False
+    degrees_of_freedom: Annotated[
+        float | None,
+        "Of the standard uncertainty: then the error has Student's t distribution. Left out where "
+        "it counts as known.",
+    ] = None
+
+    @property
+    def signed_u(self) -> float:
+        """The standard uncertainty, negative where the value falls as the error rises."""
+        return -self.u if self.inverse else self.u
+
+    def scaled(self, factor: float) -> Contribution:
+        """Return the line of a value that is so many times as large, whatever the sign."""
+        return replace(self, u=abs(factor) * self.u)
+
+    def inverted(self) -> Contribution:
+        """Return the line of a value that goes with the inverse."""
+        return replace(self, inverse=not self.inverse)
+
+
+def averaged(budgets: Sequence[Iterable[Contribution]]) -> tuple[Contribution, ...]:
+    """Average each shared line over the budgets of several specimens: one error for each cause."""
+    totals: dict[Contribution, float] = {}
+    for budget in budgets:
+        for line in budget:
+            if line.shared:
+                cause = replace(line, u=0.0)
+                totals[cause] = totals.get(cause, 0.0) + line.u
+    return tuple(replace(cause, u=u / len(budgets)) for cause, u in totals.items())
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +92,9 @@ class Quantity:
         Mark.ALWAYS,
         "Part common to the campaign (gauge, load cell, plate area): it never averages away.",
     ] = 0.0
+    calibration: Annotated[
+        str | None, Mark.NOT_WRITTEN, "Id of the calibration of its gauge: budgets name it."
+    ] = None
 
     def __post_init__(self) -> None:
         if not math.isfinite(self.value):

@@ -117,6 +117,29 @@ class Excluded:
         return f"{self.campaign}/{self.technique}/{self.specimen}"
 
 
+@dataclass(frozen=True, slots=True)
+class CalibrationRecord:
+    """A calibration that values of a card rest on, as `config/instruments.toml` declares it."""
+
+    ENTRY: ClassVar = Entry(
+        "calibration",
+        "calibrations",
+        "A calibration of a machine or a gauge: one error, shared by all values that name it.",
+        identity=("material", "calibration"),
+    )
+
+    calibration: Annotated[str, ID]
+    date: Annotated[str, SAID, "Day on which it was made, as YYYY-MM-DD."]
+    valid_until: Annotated[str, SAID, "Last day on which it holds, as YYYY-MM-DD."]
+    covers: Annotated[tuple[str, ...], array(SAID, 1), "What of the machine or gauge."]
+    certificate: Annotated[str, SAID, "Number of the certificate, or the source."]
+    u_relative: Annotated[
+        float | None,
+        UNCERTAINTY,
+        "Relative standard uncertainty. Left out where the machine or gauge declares it.",
+    ] = None
+
+
 class Result(Protocol):
     """What a technique makes of one specimen, in typed fields of its own."""
 
@@ -178,6 +201,12 @@ class Origin:
     tested_on: Annotated[str | None, "Day of the test, as YYYY-MM-DD."] = None
     temperature_K: Annotated[float | None, "Temperature of this specimen."] = None
     humidity: Annotated[float | None, "Relative humidity at its test, 0 to 1."] = None
+    calibrations: Annotated[
+        tuple[str, ...],
+        array(ID),
+        Mark.IF_ANY,
+        "Ids of the calibrations of its machine and gauges. Left out where none is declared.",
+    ] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

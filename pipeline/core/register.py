@@ -327,7 +327,10 @@ class _Rows:
             if u_own < 0:
                 reason = "an uncertainty below zero"
                 raise RawFileError(self.path, reason, line, twin.index + 1, u_cell)
-        found = Quantity(value, column.unit, u_own, gauge.u_calibration_m if gauge else 0.0)
+        found = Quantity(
+            *(value, column.unit, u_own, gauge.u_calibration_m if gauge else 0.0),
+            calibration=gauge.calibration if gauge else None,
+        )
         self.quantities[name, cell, u_cell] = found
         return found
 

@@ -44,6 +44,7 @@ class Mark(Enum):
     ALWAYS = "written also where it has its default, where other such fields are left out"
     IF_ANY = "a list that is left out where it is empty"
     NO_COLUMN = "follows from another column"
+    NOT_WRITTEN = "stands elsewhere on the card"
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,7 +149,7 @@ def _listed(cls: Any) -> tuple[Field, ...]:
         hint = hints[declared.name]
         if is_dataclass(hint) and not hasattr(hint, "ENTRY"):  # its fields stand among ours
             found += [_below(declared.name, field) for field in fields_of(hint)]
-        elif Mark.OF_THE_CARD not in _marks(hint):
+        elif not {Mark.OF_THE_CARD, Mark.NOT_WRITTEN} & set(_marks(hint)):
             found.append(_field(declared.name, hint, declared.default))
         found += [field for after, field in derived if after == declared.name]
     return tuple(found)

@@ -9,6 +9,7 @@ from typing import Any, Generic
 from pydantic import BaseModel
 from typing_extensions import TypeVar  # with a default, which typing has from Python 3.13 on
 
+from deamat.core.calibration import Covered
 from deamat.core.chart import Chart
 from deamat.core.instruments import Machine
 from deamat.core.quantity import Quantity
@@ -57,6 +58,7 @@ class Technique(Generic[C, R]):
     summarise : all measurements of one material under one set of conditions to a summary
     figure : shows a material's measurements as a chart; None for a technique without one
     register : which register it reads and what a row of it is; one row per specimen by default
+    measures : what of the machine its values rest on
     """
 
     key: str
@@ -69,6 +71,7 @@ class Technique(Generic[C, R]):
     summarise: Callable[[Sequence[Measurement[R]], Context[C]], Summary]
     figure: Callable[[Sequence[Measurement[R]], Summary], Chart] | None = None
     register: RegisterForm = SPECIMENS
+    measures: tuple[Covered, ...] = ()
 
 
 # Of whichever config and result: what the one list holds and the driver works through.

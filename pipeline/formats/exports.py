@@ -28,8 +28,8 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, RootModel, ValidationError, field_validator, model_validator
 from pydantic_core import ErrorDetails
 
+from deamat.core.declared import Declared
 from deamat.core.errors import ConfigError
-from deamat.core.instruments import Declared
 from deamat.core.toml import line_of, parse_toml
 from deamat.core.unit_spellings import unit_as_written
 from deamat.core.units import UnknownUnit, si_factor

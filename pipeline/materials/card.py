@@ -18,7 +18,7 @@ from deamat.core.json_text import indented
 from deamat.core.kinds import CONDITIONS_KIND, ID, SAID, Kind
 from deamat.core.present import readable_record
 from deamat.core.quantity import Quantity
-from deamat.core.records import Condition, Excluded, Law, PropertyRecord, Refusal
+from deamat.core.records import CalibrationRecord, Condition, Excluded, Law, PropertyRecord, Refusal
 from deamat.core.schema import (
     After,
     Called,
@@ -93,6 +93,11 @@ class MaterialCard:
         tuple[Excluded, ...],
         Mark.IF_ANY,
         "Specimens that were left out on purpose, and why. Left out where there are none.",
+    ] = ()
+    calibrations: Annotated[
+        tuple[CalibrationRecord, ...],
+        Mark.IF_ANY,
+        "Calibrations that the values rest on. Left out where none is declared.",
     ] = ()
 
     def keys(self) -> tuple[str, ...]:
@@ -184,6 +189,7 @@ class MaterialCard:
             laws=_in_order(map(doc.canonical_law, self.laws)),
             refusals=tuple(sorted(self.refusals, key=_refusal_order)),
             excluded=tuple(sorted(self.excluded, key=_exclusion_order)),
+            calibrations=tuple(sorted(self.calibrations, key=lambda c: c.calibration)),
             campaigns=tuple(sorted(self.campaigns, key=lambda c: c.campaign)),
         )
 

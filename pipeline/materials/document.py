@@ -37,7 +37,9 @@ def canonical_record(record: PropertyRecord) -> PropertyRecord:
     return replace(
         record,
         conditions=_in_order(record.conditions),
-        budget=tuple(sorted(record.budget, key=lambda c: (-c.u, c.source, c.shared))),
+        budget=tuple(
+            sorted(record.budget, key=lambda c: (-c.u, c.source, c.shared, c.calibration or ""))
+        ),
         origins=tuple(sorted(record.origins, key=_origin_order)),
         flags=tuple(sorted(record.flags, key=_flag_order)),
     )

@@ -149,4 +149,4 @@ def _cells(document: Document, cls: Any) -> Iterator[Cell]:
         if len(field.columns) > 1:
             yield from value or (None,) * len(field.columns)
         else:
-            yield canonical_json(value) if isinstance(value, dict | list) else value
+            yield canonical_json(value) if isinstance(value, dict | list | tuple) else value

@@ -21,6 +21,7 @@ from deamat.core.present import (
 from deamat.core.properties import property_key
 from deamat.core.quantity import Contribution, Quantity
 from deamat.core.records import (
+    CalibrationRecord,
     Condition,
     Detail,
     Excluded,
@@ -155,6 +156,7 @@ def _document(trace: Trace) -> Document:
         "property": _record_document(entry) if isinstance(entry, PropertyRecord) else None,
         "law": document_of(entry) if isinstance(entry, Law) else None,
         "refused": [{**document_of(r), "places": _refusal_places(r, card)} for r in trace.refusals],
+        "calibrations": [document_of(c) for c in _calibrations(entry, card)] if entry else [],
         "excluded": [document_of(left_out) for left_out in trace.excluded],
         "code": {"version": provenance.version, "digest": provenance.code},
         "stages": dict(provenance.stages),
@@ -185,6 +187,8 @@ def _lines(trace: Trace) -> Iterator[str]:
         yield from aligned(list(_facts(entry, card)), "  ")
     if isinstance(entry, PropertyRecord):
         yield from _budget_lines(entry)
+    if entry is not None:
+        yield from _calibration_lines(entry, card)
     if trace.refusals:
         yield from ("", "Refused")
         for refusal in trace.refusals:
@@ -246,12 +250,42 @@ def _budget_lines(record: PropertyRecord) -> Iterator[str]:
     yield from aligned(
         [
             (
-                line.source,
+                _source_of(line),
                 "shared" if line.shared else "independent",
                 readable_uncertainty(line.u, unit),
                 f"{share:.1f} % of the variance",
             )
             for line, share in zip(record.budget, percent_of_variance(record.budget), strict=True)
+        ],
+        "  ",
+    )
+
+
+def _source_of(line: Contribution) -> str:
+    return line.source if line.calibration is None else f"{line.source} ({line.calibration})"
+
+
+def _calibrations(entry: Entry, card: MaterialCard) -> tuple[CalibrationRecord, ...]:
+    """Find what is known of the calibrations that a value rests on."""
+    named = {name for origin in entry.origins for name in origin.calibrations}
+    return tuple(c for c in card.calibrations if c.calibration in named)
+
+
+def _calibration_lines(entry: Entry, card: MaterialCard) -> Iterator[str]:
+    found = _calibrations(entry, card)
+    if not found:
+        return
+    yield from ("", "Calibrations")
+    yield from aligned(
+        [
+            (
+                one.calibration,
+                ", ".join(one.covers),
+                "" if one.u_relative is None else f"u = {100.0 * one.u_relative:.3g} %",
+                f"valid {one.date} to {one.valid_until}",
+                one.certificate,
+            )
+            for one in found
         ],
         "  ",
     )
@@ -273,6 +307,10 @@ def _origin_facts(origin: Origin) -> Iterator[tuple[str, str]]:
         yield "lines", f"{origin.first_line} to {origin.last_line}, read by {origin.reader}"
     yield "register", f"{origin.register}, line {origin.register_line}"
     yield "technique", origin.technique
+    if origin.tested_on is not None:
+        yield "tested on", origin.tested_on
+    if origin.calibrations:
+        yield "calibrations", ", ".join(origin.calibrations)
     if origin.diagnostics:
         yield "diagnostics", _details(origin.diagnostics)
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+from deamat.consistency.calibrations import flags_of_calibrations
 from deamat.consistency.names import near_names
 from deamat.consistency.rows import materials_by_id
 from deamat.consistency.seen import holds_noise
@@ -20,6 +21,7 @@ from deamat.formats.rawfile import RawFile, read_raw
 from deamat.run.build_cache import key_of
 from deamat.run.measure import Measured, RunContext
 from deamat.run.work import Reduced
+from deamat.techniques import TECHNIQUES
 
 
 def compare(measured: Sequence[Measured], run: RunContext) -> list[Measured]:
@@ -46,6 +48,8 @@ def compare(measured: Sequence[Measured], run: RunContext) -> list[Measured]:
         for one in members:
             place = (campaign, one.specimen.id)
             flags = [*noticed.flags.get(one.specimen.id, ())]
+            measures = TECHNIQUES[one.specimen.technique].measures
+            flags += flags_of_calibrations(one.specimen, run.config.instruments, measures)
             if place in elsewhere:
                 flags.append(elsewhere[place])
             if one.specimen.material in names:

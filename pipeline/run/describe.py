@@ -12,6 +12,7 @@ from deamat.run.flags import listed
 from deamat.run.measure import Group, RunContext
 from deamat.run.summary import DEPARTURES
 from deamat.run.vanished import Published, vanished
+from deamat.techniques import TECHNIQUES
 
 FAILURE = 3  # the exit code of a run with an internal error
 
@@ -61,6 +62,7 @@ def describe(
             for r in refusals
         ],
         "flags": listed(records, [law for s in summaries for law in s.laws]),
+        "default_limits": _default_limits(run),
         "vanished": vanished(
             before, records, refusals, files, [e for s in run.surveys for e in s.excluded]
         ),
@@ -87,6 +89,20 @@ def describe(
         "release": release,
         "cards": str(run.folders.processed / "cards"),
     }
+
+
+def _default_limits(run: RunContext) -> list[dict[str, Any]]:
+    """Name the instruments that no entry of the configuration matches, with their campaigns."""
+    found: dict[str, dict[str, None]] = {}
+    for survey in run.surveys:
+        for specimen in survey.specimens:
+            if not TECHNIQUES[specimen.technique].measures or specimen.file is None:
+                continue
+            stated = specimen.notes.get("instrument", "")
+            if not run.config.instruments.machine(stated).entry:
+                place = f"{specimen.campaign}/{specimen.technique}"
+                found.setdefault(stated, {})[place] = None
+    return [{"instrument": stated, "of": list(places)} for stated, places in found.items()]
 
 
 def _waiting(files: Sequence[FileEntry]) -> list[dict[str, Any]]:

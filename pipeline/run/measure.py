@@ -7,12 +7,13 @@ from dataclasses import dataclass, field, replace
 from graphlib import TopologicalSorter
 from typing import TypeVar
 
+from deamat.consistency.calibrations import calibrations_of, instrument_of
 from deamat.consistency.notes import noted, with_circumstances
 from deamat.consistency.states import states, under
 from deamat.core.config import Config, Pooling
 from deamat.core.config import digest as config_digest
 from deamat.core.flags import Flag
-from deamat.core.instruments import Machine
+from deamat.core.instruments import Instruments, Machine
 from deamat.core.ledger import Failure
 from deamat.core.properties import REFERENCE_AGE
 from deamat.core.quantity import Quantity
@@ -194,7 +195,11 @@ def summarise(
                 run.unmade |= {(*place, property_) for property_ in technique.yields}
         else:
             context = Context(config, Machine(), {}, laws=laws)
-            made = _summary(technique, bare, context, members) if good else None
+            made = (
+                _summary(technique, bare, context, members, run.config.instruments)
+                if good
+                else None
+            )
             if isinstance(made, Failure):
                 summary, key = None, run.fail(made)
             else:
@@ -228,13 +233,21 @@ def _groups(
 
 
 def _summary(
-    technique: AnyTechnique, group: Group, context: Context, members: Sequence[Measured]
+    technique: AnyTechnique,
+    group: Group,
+    context: Context,
+    members: Sequence[Measured],
+    instruments: Instruments,
 ) -> Summary | Failure:
     rows = {m.specimen.id: m.specimen for m in members}
+    held = {who: calibrations_of(row, instruments, technique.measures) for who, row in rows.items()}
 
     def make() -> Summary:
-        made = technique.summarise(group.measurements, context)
-        return with_circumstances(noted(made, {m.specimen.id: m.flags for m in members}), rows)
+        made = noted(
+            technique.summarise(group.measurements, context),
+            {m.specimen.id: m.flags for m in members},
+        )
+        return with_circumstances(made, rows, held)
 
     return attempt("summary", group.subject, group.files, make)
 
@@ -253,7 +266,7 @@ def _tasks(technique: AnyTechnique, run: RunContext) -> Iterator[tuple[str, dict
             if specimen.technique != technique.key or survey.campaign is None:
                 continue
             entry = survey.entries[specimen.file] if specimen.file else None
-            name, machine = run.config.instruments.machine(specimen.notes.get("instrument", ""))
+            machine = instrument_of(specimen, run.config.instruments)
             place = (specimen.campaign, specimen.material)
             given = run.records.get(place, [])
             found = needs_met(technique, specimen, given)
@@ -272,7 +285,7 @@ def _tasks(technique: AnyTechnique, run: RunContext) -> Iterator[tuple[str, dict
             parts = {
                 "register row": digest(specimen),
                 "config": config_digest(config),
-                "instrument": f"{name}:{config_digest(machine)}",
+                "instrument": f"{machine.entry or 'default'}:{config_digest(machine)}",
                 "campaign": digest((info.ends_open, info.timezone, survey.stated_units)),
                 "needs": STALE if awaited else digest(sorted(found.items())),
                 **run.stages.parts(f"measurement {technique.key}"),

@@ -8,8 +8,10 @@ from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
+from deamat.core.calibration import Calibration
 from deamat.core.json_text import indented
 from deamat.core.ledger import Failure, FileEntry, Provenance
+from deamat.core.records import CalibrationRecord
 from deamat.materials.card import Credit, MaterialCard
 from deamat.materials.curves import write_curves
 from deamat.materials.database import write_database
@@ -187,6 +189,10 @@ def _card(material: str, groups: Sequence[Group], run: RunContext) -> MaterialCa
         for c, i in ((c, infos[c]) for c in campaigns)
     )
     summaries = [g.summary for g in groups if g.summary]
+    origins = [o for s in summaries for r in s.records for o in r.origins]
+    origins += [o for s in summaries for law in s.laws for o in law.origins]
+    named = {name for origin in origins for name in origin.calibrations}
+    known = run.config.instruments.calibrations
     return MaterialCard(
         material=material,
         name=run.config.name_of(material),
@@ -196,11 +202,23 @@ def _card(material: str, groups: Sequence[Group], run: RunContext) -> MaterialCa
         refusals=tuple(r for s in summaries for r in s.refusals),
         campaigns=credits_,
         excluded=tuple(e for s in run.surveys for e in s.excluded if e.material == material),
+        calibrations=tuple(_calibration(name, known[name]) for name in sorted(named)),
+    )
+
+
+def _calibration(name: str, declared: Calibration) -> CalibrationRecord:
+    return CalibrationRecord(
+        name,
+        declared.date.isoformat(),
+        declared.last_day.isoformat(),
+        declared.covers,
+        declared.certificate,
+        declared.u_relative,
     )
 
 
 def _card_parts(card: MaterialCard, groups: Sequence[Group]) -> dict[str, str]:
-    about = digest((card.name, card.synthetic, card.campaigns, card.excluded))
+    about = digest((card.name, card.synthetic, card.campaigns, card.excluded, card.calibrations))
     return {**{g.subject: g.key for g in groups}, "about": about}
 
 

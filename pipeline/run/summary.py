@@ -37,6 +37,7 @@ def text(document: Mapping[str, Any]) -> str:
     lines += _some("excluded", _excluded(document["excluded"]))
     lines += _some("warning", document["warnings"])
     lines += flag_lines(document["flags"])
+    lines += _defaults(document["default_limits"])
     lines += _some("GONE", [_gone(value) for value in document["vanished"]])
     synthetic = [c["name"] for c in document["campaigns"] if c["synthetic"]]
     if synthetic:
@@ -61,6 +62,20 @@ def _some(label: str, said: list[str]) -> list[str]:
 
 def _excluded(excluded: Iterable[Mapping[str, Any]]) -> list[str]:
     return [f"{e.get('path') or e['specimen']}: {e['reason']}" for e in excluded]
+
+
+def _defaults(found: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Say in one line which instruments have default limits, and what would settle it."""
+    if not found:
+        return []
+    said = "; ".join(
+        f"{one['instrument'] or 'no instrument stated'} ({', '.join(one['of'])})" for one in found
+    )
+    line = (
+        f"limits     default limits of error for {said}: add [machines.NAME] with "
+        '`match = "..."` to config/instruments.toml, or the column `instrument` to the register'
+    )
+    return [line]
 
 
 def _gone(value: Mapping[str, Any]) -> str:

@@ -8,8 +8,8 @@ import pytest
 from pydantic import Field
 
 from deamat.core.config import load_config
+from deamat.core.declared import Declared
 from deamat.core.errors import ConfigError
-from deamat.core.instruments import Declared
 
 ROOT = Path(__file__).resolve().parents[2]
 

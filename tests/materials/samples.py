@@ -15,6 +15,7 @@ from deamat.core.properties import CONDITIONS, PROPERTIES
 from deamat.core.quantity import Contribution, Quantity
 from deamat.core.recording import Specimen
 from deamat.core.records import (
+    CalibrationRecord,
     Condition,
     Excluded,
     Flag,
@@ -226,7 +227,16 @@ conditions_of: dict[str, st.SearchStrategy[Condition]] = dict.fromkeys(
 )
 flags = st.lists(st.builds(Flag, names, words), max_size=2).map(tuple)
 budgets = st.lists(
-    st.builds(Contribution, names, uncertainties, st.booleans()), max_size=3, unique=True
+    st.builds(
+        Contribution,
+        *(names, uncertainties, st.booleans()),
+        calibration=st.none() | names,
+        calibrated=st.none() | names,
+        inverse=st.booleans(),
+        degrees_of_freedom=st.none() | st.floats(1.0, 100.0),
+    ),
+    max_size=3,
+    unique_by=lambda c: (c.source, c.u, c.shared),
 ).map(tuple)
 lines = st.none() | st.integers(1, 10**6)
 origins = st.lists(
@@ -245,6 +255,7 @@ origins = st.lists(
         reader=st.none() | names,
         technique=names,
         diagnostics=details,
+        calibrations=st.lists(names, max_size=2).map(tuple),
     ),
     max_size=3,
     unique_by=lambda o: (o.register, o.register_line),
@@ -301,6 +312,15 @@ cards = st.builds(
         ),
         max_size=3,
         unique_by=lambda e: e.place,
+    ).map(tuple),
+    calibrations=st.lists(
+        st.builds(
+            CalibrationRecord,
+            *(names, names, names, st.lists(names, min_size=1, max_size=2).map(tuple), names),
+            u_relative=st.none() | uncertainties,
+        ),
+        max_size=2,
+        unique_by=lambda c: c.calibration,
     ).map(tuple),
     campaigns=st.lists(
         st.builds(Credit, names, words, words, words, words, st.booleans()),

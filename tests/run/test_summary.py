@@ -25,6 +25,7 @@ WELL: dict[str, Any] = {
     "warnings": [],
     "flags": [],
     "vanished": [],
+    "default_limits": [],
     "cards": "processed/cards",
     "release": "0123abcd",
 }

@@ -121,8 +121,8 @@ def test_a_wild_configuration(folders: Folders, file: str, text: str, said: str)
 def test_a_bracket_in_the_name_of_a_machine_is_a_bracket(folders: Folders) -> None:
     (folders.config / "instruments.toml").write_text('[machines.a]\nmatch = "cell (5 kg*"\n')
     config = load_config(folders.config, {t.key: t.config for t in TECHNIQUES.values()})
-    assert config.instruments.machine("CS225, Cell (5 kg, new)")[0] == "a"
-    assert config.instruments.machine("CS225, 5 kg")[0] == "default"
+    assert config.instruments.machine("CS225, Cell (5 kg, new)").entry == "a"
+    assert config.instruments.machine("CS225, 5 kg").entry == ""
 
 
 @pytest.mark.parametrize("text", ["a = " + "[" * 900 + "]" * 900, "a = " + "9" * 5000])

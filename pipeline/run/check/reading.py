@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from deamat.consistency.calibrations import instrument_of
 from deamat.core.config import Config
 from deamat.core.errors import FitRefused, RawFileError
 from deamat.core.present import readable, readable_conditions
@@ -59,7 +60,7 @@ def reading_of(
     except FitRefused as error:
         curve, refused = None, (*refused, error.reason)
     if row is not None:
-        _, machine = config.instruments.machine(row.notes.get("instrument", ""))
+        machine = instrument_of(row, config.instruments)
         context = Context(config.methods[key], machine, {}, place.info.timezone)
         measured = technique.reduce(row, recording, context)
         values = tuple(map(_value, measured.values))

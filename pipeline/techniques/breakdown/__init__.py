@@ -27,6 +27,7 @@ TECHNIQUE = Technique(
     summarise=summarise,
     figure=figure,
     register=RegisterForm(notes=("censored",)),
+    measures=("voltage",),
 )
 
 __all__ = ["TECHNIQUE", "BreakdownConfig"]

@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from deamat.core.instruments import Declared
+from deamat.core.declared import Declared
 from deamat.techniques.breakdown.ramp import After, Criteria
 
 FIELD = "breakdown_field"

@@ -16,6 +16,7 @@ from deamat.techniques.breakdown.seen import (
     declared_censored,
     refuse_beyond_limit,
 )
+from deamat.techniques.shared.geometry import gauge_error
 from deamat.techniques.shared.outcome import nothing_measured, relative_lines
 
 _CONDITIONS = ("electrode_area_m2", "rate_V_per_s")
@@ -113,9 +114,13 @@ def _field(
         value /= thickness.value
         details = {"voltage_V": seen.value, "thickness_m": thickness.value, **details}
         budget += (
-            Contribution("voltage calibration", context.machine.u_voltage_calibration, True),
+            context.machine.shared_error(
+                "voltage calibration", "voltage", context.machine.u_voltage_calibration
+            ),
             Contribution("thickness reading", thickness.u_independent / thickness.value, False),
-            Contribution("thickness gauge", thickness.u_shared / thickness.value, True),
+            gauge_error(
+                "thickness gauge", thickness.u_shared / thickness.value, thickness, "thickness"
+            ).inverted(),
         )
         method += f" {_STYLE}"
         if "micrometer_force_N" in specimen.numbers:

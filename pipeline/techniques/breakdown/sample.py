@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,13 +64,14 @@ def samples(measurements: Sequence[Measurement[FilmTest]]) -> Iterator[Sample]:
 
 def shared_lines(sample: Sample) -> tuple[Contribution, ...]:
     """Average each shared source over the specimens, relative to their fields: one error each."""
-    totals: dict[str, float] = {}
+    totals: dict[Contribution, float] = {}
     for _, value in sample.pairs:
         for line in value.budget:
             if line.shared:
+                cause = replace(line, u=0.0)
                 part = line.u / value.quantity.value / len(sample.pairs)
-                totals[line.source] = totals.get(line.source, 0.0) + part
-    return tuple(Contribution(source, u, True) for source, u in totals.items())
+                totals[cause] = totals.get(cause, 0.0) + part
+    return tuple(replace(cause, u=u) for cause, u in totals.items())
 
 
 def methods(sample: Sample) -> str:

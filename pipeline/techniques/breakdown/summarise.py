@@ -106,7 +106,7 @@ def _records(sample: Sample, lost: list[str], config: BreakdownConfig) -> list[P
         systematic = shared if unit == "V/m" else ()
         budget = (
             Contribution("conditional distribution of the fit", u, False),
-            *(Contribution(c.source, value * c.u, True) for c in systematic),
+            *(c.scaled(value) for c in systematic),
         )
         specimen = sample.pairs[0][0].specimen
         return PropertyRecord(

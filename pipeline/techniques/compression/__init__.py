@@ -20,4 +20,5 @@ TECHNIQUE = Technique(
     summarise=summarise,
     figure=figure,
     register=RegisterForm(notes=("plates",)),
+    measures=("force", "displacement"),
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from deamat.core.instruments import Declared
+from deamat.core.declared import Declared
 
 KEY = "handling_time"
 VISCOSITY_THEN = "viscosity_at_handling_time"

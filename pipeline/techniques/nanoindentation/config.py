@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from deamat.core.instruments import Declared
+from deamat.core.declared import Declared
 
 MODULUS = "indentation_modulus"
 YIELDS = (MODULUS,)

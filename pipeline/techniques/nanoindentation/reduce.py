@@ -265,10 +265,10 @@ def _area(coefficients: Sequence[float], depth: float) -> tuple[float, float]:
 
 def _machine_budget(machine: Machine, depth_power: float) -> tuple[Contribution, ...]:
     return (
-        Contribution("load calibration", machine.u_force_calibration, shared=True),
-        Contribution(
-            "depth calibration", depth_power * machine.u_displacement_calibration, shared=True
-        ),
+        machine.shared_error("load calibration", "force", machine.u_force_calibration),
+        machine.shared_error(
+            "depth calibration", "displacement", depth_power * machine.u_displacement_calibration
+        ).inverted(),
     )
 
 

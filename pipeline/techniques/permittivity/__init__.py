@@ -33,4 +33,5 @@ TECHNIQUE = Technique(
     reduce=reduce,
     summarise=summarise,
     figure=figure,
+    measures=("impedance",),
 )

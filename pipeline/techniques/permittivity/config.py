@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from deamat.core.instruments import Declared
+from deamat.core.declared import Declared
 
 PERMITTIVITY = "relative_permittivity"
 LOSS = "loss_tangent"

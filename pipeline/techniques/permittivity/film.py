@@ -91,9 +91,9 @@ def film_of(numbers: Mapping[str, Quantity], context: Context[PermittivityConfig
         area_m2=length.value * width.value,
         perimeter_m=2.0 * (length.value + width.value),
         budget=(
-            *scale_budget("film thickness", read),
+            *scale_budget("film thickness", read, column="thickness"),
             *squeezed,
-            Contribution("plate area", u_area, shared=True),
+            Contribution("plate area", u_area, shared=True, inverse=True),
         ),
         correction=correction,
     )

@@ -48,7 +48,22 @@ class Reading:
     permittivity: FloatArray
     loss: FloatArray
     resistance: tuple[float, float] | None
-    config: PermittivityConfig
+    context: Context[PermittivityConfig]
+
+    @property
+    def config(self) -> PermittivityConfig:
+        """Settings of the room."""
+        return self.context.config
+
+    def meter(self, u: float) -> Contribution:
+        """Return the error of the meter's impedance."""
+        return self.context.machine.shared_error("LCR meter", "impedance", u)
+
+    def meter_of_loss(self, u: float) -> Contribution:
+        """Return the error of the meter's phase: it is another one."""
+        line = self.meter(u)
+        calibrated = None if line.calibration is None else "loss"
+        return replace(line, source=f"{line.source}, phase", calibrated=calibrated)
 
     @property
     def spectrum(self) -> Spectrum:
@@ -121,7 +136,7 @@ def reduce(
     try:
         point = card_point(spectrum, config)
         curve = _curve(point.spectrum, film, config)
-        reading = _read(film, point, curve, config)
+        reading = _read(film, point, curve, context)
         dependence = _dependence(reading)
     except FitRefused as error:
         refusals = tuple(refusal(specimen, key, error, at) for key in (PERMITTIVITY, LOSS))
@@ -156,10 +171,14 @@ def _film(
     return replace(film, edge_corrected=cell.edge_corrected), cell.vacuum_F
 
 
-def _read(film: Film, point: CardPoint, curve: FilmSpectrum, config: PermittivityConfig) -> Reading:
+def _read(
+    film: Film, point: CardPoint, curve: FilmSpectrum, context: Context[PermittivityConfig]
+) -> Reading:
     sound = point.spectrum
     resistance = series_resistance(sound.frequency_Hz, sound.series_capacitance_F, sound.loss)
-    return Reading(film, point, curve.relative_permittivity, curve.loss_tangent, resistance, config)
+    return Reading(
+        film, point, curve.relative_permittivity, curve.loss_tangent, resistance, context
+    )
 
 
 def _curve(spectrum: Spectrum, film: Film, config: PermittivityConfig) -> FilmSpectrum:
@@ -184,7 +203,7 @@ def _permittivity(
         value,
         (
             *reading.film.budget,
-            Contribution("LCR meter", limit / _LIMIT_TO_SIGMA, shared=True),
+            reading.meter(limit / _LIMIT_TO_SIGMA),
             Contribution("edge field", edge, shared=True),
             *reading.point.found.permittivity,
         ),
@@ -232,7 +251,7 @@ def _loss(reading: Reading, flags: tuple[Flag, ...]) -> MeasuredValue:
                 f"{value:.2g}, where the meter tells losses to +- {2 * u:.2g}: not told from zero",
             ),
         )
-    budget = (Contribution("LCR meter", u, shared=True), *reading.point.found.loss)
+    budget = (reading.meter_of_loss(u), *reading.point.found.loss)
     return MeasuredValue(
         key=LOSS,
         quantity=Quantity.from_budget(value, "1", budget),

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field
 
-from deamat.core.instruments import Declared
+from deamat.core.declared import Declared
 
 
 def _rising(window: tuple[float, float]) -> tuple[float, float]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from deamat.core.errors import FitRefused
@@ -28,14 +28,37 @@ def register_length(numbers: Mapping[str, Quantity], name: str) -> Quantity:
     return length
 
 
-def scale_budget(what: str, length: Quantity, power: float = 1.0) -> tuple[Contribution, ...]:
-    """List what an error of a length does to a value that goes with its power, relative `[1]`."""
+def scale_budget(
+    what: str, length: Quantity, power: float = 1.0, column: str | None = None
+) -> tuple[Contribution, ...]:
+    """List what an error of a length does to a value that goes with its power, relative `[1]`.
+
+    Parameters
+    ----------
+    column : of the register whose gauge read it, without its unit; `what` by default
+    """
     relative = power / length.value
     lines = (
         Contribution(f"{what}, reading", relative * length.u_independent, shared=False),
-        Contribution(f"{what}, gauge calibration", relative * length.u_shared, shared=True),
+        gauge_error(
+            f"{what}, gauge calibration", relative * length.u_shared, length, column or what
+        ),
     )
     return tuple(c for c in lines if c.u > 0.0)
+
+
+def gauge_error(source: str, u: float, length: Quantity, column: str) -> Contribution:
+    """Return the line of a budget that is the error of a length's gauge, with its calibration."""
+    if length.calibration is None:
+        return Contribution(source, u, shared=True)
+    return Contribution(
+        source, u, shared=True, calibration=length.calibration, calibrated=column.replace(" ", "_")
+    )
+
+
+def inverted(budget: Iterable[Contribution]) -> tuple[Contribution, ...]:
+    """Return the relative lines of what goes with the inverse: shared errors change their sign."""
+    return tuple(line.inverted() if line.shared else line for line in budget)
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from deamat.core.errors import FitRefused
 from deamat.core.flags import merged
 from deamat.core.properties import property_key
-from deamat.core.quantity import Contribution, Quantity
+from deamat.core.quantity import Contribution, Quantity, averaged
 from deamat.core.records import (
     Bound,
     Condition,
@@ -98,7 +98,7 @@ def _record(
 ) -> PropertyRecord:
     specimen, first = pairs[0][0].specimen, pairs[0][1]
     n = len(pairs)
-    shared = _shared_lines(pairs)
+    shared = averaged([value.budget for _, value in pairs])
     found = _mean(pairs, math.sqrt(math.fsum(c.u**2 for c in shared)))
     if n == 1:
         budget = first.budget
@@ -150,16 +150,6 @@ def _mean(pairs: Sequence[Pair], u_shared: float) -> _Found:
     mean = mean_with_shared(values, own.quantity.u_independent, u_shared, own.degrees_of_freedom)
     interval = mean.ci95 if min(values) < 0.0 else positive_interval(mean)
     return _Found(mean, interval, "exact", "mean")
-
-
-def _shared_lines(pairs: Sequence[Pair]) -> tuple[Contribution, ...]:
-    """Average each shared source over the specimens: one error, fully correlated."""
-    totals: dict[str, float] = {}
-    for _, value in pairs:
-        for line in value.budget:
-            if line.shared:
-                totals[line.source] = totals.get(line.source, 0.0) + line.u
-    return tuple(Contribution(source, u / len(pairs), True) for source, u in totals.items())
 
 
 def origin_of(measurement: Measurement[Result], value: MeasuredValue, technique: str) -> Origin:

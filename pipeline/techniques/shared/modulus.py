@@ -14,6 +14,7 @@ from deamat.core.records import Condition, Flag, MeasuredValue
 from deamat.estimators.curves.slope import FEW_INDEPENDENT, Line, fit_line, outlying
 from deamat.estimators.curves.stress_strain import reloads
 from deamat.estimators.mean import coverage_factor
+from deamat.techniques.shared.geometry import inverted
 from deamat.techniques.shared.outcome import line_span, relative_lines
 from deamat.techniques.shared.stress_strain import IndexArray, StressStrain
 
@@ -134,7 +135,7 @@ def slope_budget(line: Line, curve: StressStrain) -> tuple[Contribution, ...]:
         Contribution("machine compliance", line.slope**2 * curve.u_compliance_per_Pa, shared=True),
     )
     return tuple(c for c in own if c.u > 0.0) + relative_lines(
-        line.slope, curve.stress_budget + curve.strain_budget
+        line.slope, curve.stress_budget + inverted(curve.strain_budget)
     )
 
 

@@ -38,7 +38,7 @@ def line_span(source: Source, rows: int, first: int, last: int) -> tuple[int, in
 
 def relative_lines(value: float, budget: Iterable[Contribution]) -> tuple[Contribution, ...]:
     """Turn relative lines of a budget into those of the value; lines of nothing are left out."""
-    return tuple(Contribution(c.source, abs(value) * c.u, c.shared) for c in budget if c.u > 0.0)
+    return tuple(c.scaled(value) for c in budget if c.u > 0.0)
 
 
 def refusal(

@@ -18,7 +18,7 @@ from deamat.core.records import Flag
 from deamat.estimators.curves.lone import lone_readings, without
 from deamat.estimators.curves.start import find_hold, zero_of_position
 from deamat.estimators.curves.stress_strain import loading_branch
-from deamat.techniques.shared.geometry import Section, scale_budget
+from deamat.techniques.shared.geometry import Section, inverted, scale_budget
 from deamat.techniques.shared.outcome import line_span
 
 IndexArray = NDArray[np.intp]
@@ -95,10 +95,12 @@ def stress_strain(
     """
     columns, wild = _without_lone_readings(recording)
     strain_budget: tuple[Contribution, ...] = (
-        Contribution("displacement calibration", machine.u_displacement_calibration, shared=True),
+        machine.shared_error(
+            "displacement calibration", "displacement", machine.u_displacement_calibration
+        ),
     )
     stress_budget: tuple[Contribution, ...] = (
-        Contribution("load cell calibration", machine.u_force_calibration, shared=True),
+        machine.shared_error("load cell calibration", "force", machine.u_force_calibration),
     )
     own = None
     compliance: float | None = None
@@ -109,8 +111,8 @@ def stress_strain(
         strain, stress = _loading_positive(
             columns["displacement_m"], columns["force_N"], length.value, section.area_m2
         )
-        strain_budget += scale_budget(length_name, length)
-        stress_budget += section.budget
+        strain_budget += inverted(scale_budget(length_name, length))
+        stress_budget += inverted(section.budget)
         basis = f"force over the register's cross-section, displacement over its {length_name}"
         if "nominal_stress_Pa" in columns:
             _insist_on_own_stress(strain, stress, columns["nominal_stress_Pa"], own_stress_refused)

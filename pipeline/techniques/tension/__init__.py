@@ -18,4 +18,5 @@ TECHNIQUE = Technique(
     reduce=reduce,
     summarise=summarise,
     figure=figure,
+    measures=("force", "displacement"),
 )

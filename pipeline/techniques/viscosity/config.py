@@ -7,7 +7,7 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
-from deamat.core.instruments import Declared
+from deamat.core.declared import Declared
 
 VISCOSITY = "viscosity"
 AGAINST_TEMPERATURE = "viscosity_against_temperature"

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from deamat.core.errors import FitRefused
+from deamat.core.instruments import Machine
+from deamat.core.quantity import Contribution
 from deamat.core.recording import Recording, Specimen
 from deamat.core.records import MeasuredValue, Measurement, Refusal
 from deamat.core.technique import Context
@@ -22,6 +24,8 @@ from deamat.techniques.viscosity.readings import Readings, audited
 from deamat.techniques.viscosity.result import Run
 from deamat.techniques.viscosity.values import asked_of, drifting, drifts, measured
 from deamat.techniques.viscosity.window import Windowed, stated_temperature_K, windowed
+
+_CALIBRATION = "viscometer calibration"
 
 
 def reduce(
@@ -54,8 +58,16 @@ def reduce(
         fitted = fit_law([window], config)
     except FitRefused as error:
         return nothing_measured(specimen, ALWAYS, error, recording, readings)
-    values_, refusals = _values(specimen, readings, window, fitted, config)
+    shared = _viscometer(readings, context.machine)
+    values_, refusals = _values(specimen, readings, window, fitted, config, shared)
     return Measurement(specimen, values_, refusals, readings, source)
+
+
+def _viscometer(readings: Readings, machine: Machine) -> Contribution:
+    """Name the error that all readings share; without rotor and speed it is none of the machine."""
+    if readings.of_full_scale:
+        return machine.shared_error(_CALIBRATION, "torque", 0.0)
+    return Contribution(_CALIBRATION, 0.0, shared=True)
 
 
 def _values(
@@ -64,6 +76,7 @@ def _values(
     window: Windowed,
     fitted: Fitted,
     config: ViscosityConfig,
+    shared: Contribution,
 ) -> tuple[tuple[MeasuredValue, ...], tuple[Refusal, ...]]:
     law = fitted.law
     lines = window.readings.line
@@ -73,7 +86,7 @@ def _values(
     values, refusals = [], []
     for asked in asked_of(law, window, config):
         try:
-            values.append(measured(asked, fitted, config, method, flags, span))
+            values.append(measured(asked, fitted, config, method, flags, span, shared))
         except FitRefused as error:
             refusals.append(refusal(specimen, asked.key, error, asked.conditions))
     if drifts(window):

@@ -189,8 +189,13 @@ def measured(
     method: str,
     flags: tuple[Flag, ...],
     lines: tuple[int, int],
+    shared: Contribution,
 ) -> MeasuredValue:
     """Answer with a budget: scatter about the laws, and the calibration that all runs share.
+
+    Parameters
+    ----------
+    shared : the error of the viscometer, of whatever size
 
     Raises
     ------
@@ -207,7 +212,10 @@ def measured(
     except OutOfRange as error:
         raise FitRefused(str(error)) from error
     if found.calibration > 0:
-        budget.append(Contribution("viscometer calibration", found.calibration, shared=True))
+        own = replace(shared, u=found.calibration)
+        if property_key(asked.key).unit == "s":  # a time may go either way: another error
+            own = replace(own, source=f"{own.source}, of a time", calibration=None)
+        budget.append(own)
     if found.thermal > 0:
         budget.append(Contribution("correction of temperature", found.thermal, shared=True))
     rate = law.rate_per_rpm_per_s

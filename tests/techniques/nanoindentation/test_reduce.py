@@ -193,7 +193,7 @@ def test_the_files_of_seed_2022_give_the_truth_back_or_are_refused() -> None:
     measured: dict[str, list[Measurement[Indent]]] = {}
     for row in register.specimens:
         file = RawFile(row.file or "", files[(row.file or "").removeprefix("c/")])
-        machine = config.instruments.machine(row.notes["instrument"])[1]
+        machine = config.instruments.machine(row.notes["instrument"])
         assert machine.max_travel_m == 5e-6
         context = Context(TECHNIQUE.config(), machine, {})
         made = TECHNIQUE.reduce(row, detect(file).read(file), context)

@@ -54,7 +54,7 @@ def records(
         for s in register.specimens:
             if s.material == material and s.conditions["age"] == REFERENCE_AGE and s.file:
                 file = RawFile(s.file, files[s.file.removeprefix("c/")])
-                _, machine = CONFIG.instruments.machine(s.notes["instrument"])
+                machine = CONFIG.instruments.machine(s.notes["instrument"])
                 context = Context(config, machine, needs[material])
                 measured.append(technique.reduce(s, detect(file).read(file), context))
         assert len(measured) == 5
@@ -102,11 +102,11 @@ def test_only_the_soft_films_are_called_squeezed(cards: dict[str, list[PropertyR
 
 
 def test_the_simulated_meter_and_force_are_those_that_are_declared() -> None:
-    name, machine = CONFIG.instruments.machine(
+    machine = CONFIG.instruments.machine(
         "simulated GW Instek LCR-6020, checked against a reference capacitor"
     )
-    assert (name, machine.impedance) == ("lcr-6020-checked", METER)
-    assert CONFIG.instruments.machine("GW Instek LCR-6020")[0] == "lcr-6020"
+    assert (machine.entry, machine.impedance) == ("lcr-6020-checked", METER)
+    assert CONFIG.instruments.machine("GW Instek LCR-6020").entry == "lcr-6020"
     assert PermittivityConfig().u_micrometer_force == U_FORCE
 
 
