@@ -11,7 +11,9 @@ from pathlib import Path
 import click
 
 from deamat import __version__
+from deamat.commands.add import add
 from deamat.commands.check import check
+from deamat.commands.init import init
 from deamat.commands.learn import learn
 from deamat.commands.options import (
     INTERNAL,
@@ -40,10 +42,6 @@ Exit codes:
 @click.version_option(__version__)
 def cli() -> None:
     """From raw laboratory files of soft dielectric elastomers to material cards people trust."""
-
-
-cli.add_command(check)
-cli.add_command(learn)
 
 
 @cli.command("all")
@@ -267,7 +265,8 @@ def simulate(
     click.echo(f"SYNTHETIC campaign {written}, its truth {truth}")
 
 
-cli.add_command(register)
+for command in (add, check, init, learn, register):
+    cli.add_command(command)
 
 
 def _pair(text: str) -> tuple[str, str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
+from dataclasses import dataclass
 from datetime import date
 
 import numpy as np
@@ -33,11 +34,15 @@ _STAMP = re.compile(
     r"(?:.*: ?)?(?:timestamp|(?:test|start|measurement) ?(?:date|time)|date(?: ?(?:and|/) ?time)?|"
     r"tested(?: on)?|datum|pr(?:ü|ue)fdatum)"
 )
+_OPERATOR = re.compile(
+    r"(?:.*: ?)?(?:operator(?: ?name)?|tested by|user ?name|technician|bediener|pr(?:ü|ue)fer)"
+)
+_SPEED = "speed_m_per_s"
 _LENGTHS = {
     "diameter": "diameter_m", "durchmesser": "diameter_m", "height": "height_m", "höhe": "height_m",
     "width": "width_m", "breite": "width_m", "thickness": "thickness_m", "dicke": "thickness_m",
-    "gauge length": "gauge_length_m", "length": "gauge_length_m", "speed": "speed_m_per_s",
-    "test speed": "speed_m_per_s", "crosshead speed": "speed_m_per_s",
+    "gauge length": "gauge_length_m", "length": "gauge_length_m", "speed": _SPEED,
+    "test speed": _SPEED, "crosshead speed": _SPEED,
 }  # fmt: skip
 _LENGTH = re.compile(
     rf"(?:.*: ?)?(?:(?:specimen|sample|cylinder|probe(?:n)?|test ?piece) ?)?"
@@ -67,7 +72,27 @@ def against_row(recording: Recording, specimen: Specimen) -> tuple[Flag, ...]:
     )
 
 
-def _lengths(metadata: Mapping[str, str], specimen: Specimen) -> Iterator[Flag]:
+@dataclass(frozen=True, slots=True)
+class Stated:
+    """A length or a speed that a file states of its specimen.
+
+    Parameters
+    ----------
+    key, text : as written
+    word : of the key, without what stands around it
+    name : of the register's number by its SI name (`diameter_m`)
+    value : in SI
+    """
+
+    key: str
+    text: str
+    word: str
+    name: str
+    value: float
+
+
+def stated_lengths(metadata: Mapping[str, str]) -> Iterator[Stated]:
+    """Return every length and speed that a file states with its unit."""
     for key, text in metadata.items():
         if not text[:1].isdigit():
             continue
@@ -76,15 +101,36 @@ def _lengths(metadata: Mapping[str, str], specimen: Specimen) -> Iterator[Flag]:
             continue
         name = _LENGTHS[found[1]]
         unit = key[found.start(2) : found.end(2)] if found[2] else (value[2] or "")
-        row = specimen.numbers.get(name)
-        if row is None or not known(unit) or si_factor(unit)[0] != row.unit or not row.value:
+        if known(unit) and si_factor(unit)[0] == ("m/s" if name == _SPEED else "m"):
+            yield Stated(key, text, found[1], name, float(value[1]) * si_factor(unit)[1])
+
+
+def stated_days(metadata: Mapping[str, str]) -> Iterator[tuple[str, list[date]]]:
+    """Return every stamp of a test with the days that it may mean."""
+    for key, text in metadata.items():
+        if _STAMP.fullmatch(key.casefold()) and (days := _possible_days(text)):
+            yield key, days
+
+
+def operator_of(recording: Recording) -> str:
+    """Return who tested it as the export writes it; empty where it does not."""
+    for key, value in recording.metadata.items():
+        if _OPERATOR.fullmatch(key.casefold()):
+            return value
+    return ""
+
+
+def _lengths(metadata: Mapping[str, str], specimen: Specimen) -> Iterator[Flag]:
+    for stated in stated_lengths(metadata):
+        row = specimen.numbers.get(stated.name)
+        if row is None or not row.value:
             continue
-        stated = float(value[1]) * si_factor(unit)[1]
-        if abs(stated / row.value - 1.0) > _OFF:
+        ratio = stated.value / row.value
+        if abs(ratio - 1.0) > _OFF:
             yield Flag(
                 "header-disagrees",
-                f"the file says {key} {text}, which is {stated / row.value:.4g} times the "
-                f"{found[1]} of its row",
+                f"the file says {stated.key} {stated.text}, which is {ratio:.4g} times the "
+                f"{stated.word} of its row",
             )
 
 
@@ -92,12 +138,7 @@ def _stamp(metadata: Mapping[str, str], specimen: Specimen) -> Iterator[Flag]:
     tested, cured = day_of(specimen, "tested_on"), day_of(specimen, "cured_on")
     if tested is None and cured is None:
         return
-    for key, text in metadata.items():
-        if not _STAMP.fullmatch(key.casefold()):
-            continue
-        days = _possible_days(text)
-        if not days:
-            continue
+    for _, days in stated_days(metadata):
         if tested is not None and min(abs((day - tested).days) for day in days) > 1:
             said = f"the file was written on {days[0]}, its row says tested on {tested}"
             yield Flag("tested-on-disagrees", said)

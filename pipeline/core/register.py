@@ -67,6 +67,7 @@ class RegisterForm:
     conditions : number by its SI name (`bed_temperature_K`) to the condition key that it gives
     whole : the rows hang together, so that one bad row spoils all of them
     notes : further text columns that the technique reads where they are there
+    asked : columns beside the required ones that most files need: numbers by SI name, or texts
     """
 
     file: str = REGISTER_FILE
@@ -75,6 +76,7 @@ class RegisterForm:
     conditions: Mapping[str, str] = field(default_factory=dict)
     whole: bool = False
     notes: tuple[str, ...] = ()
+    asked: tuple[str, ...] = ()
 
 
 SPECIMENS = RegisterForm()

@@ -12,7 +12,7 @@ import csv
 import io
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from deamat.core.errors import RawFileError
 from deamat.core.sheets import ARCHIVE, read_sheets
@@ -32,11 +32,13 @@ class RegisterTable:
     Parameters
     ----------
     separator : of its fields, empty for a workbook
+    encoding : of its text, empty for a workbook
     """
 
     header: tuple[str, ...]
     rows: tuple[tuple[int, list[str]], ...]
     separator: str
+    encoding: str = ""
 
 
 def read_table(data: bytes, path: str, names: Sequence[str]) -> RegisterTable:
@@ -53,10 +55,10 @@ def read_table(data: bytes, path: str, names: Sequence[str]) -> RegisterTable:
     """
     if data.startswith(ARCHIVE):
         return _of_workbook(data, path, names)
-    text = _decoded(data, path)
+    text, encoding = _decoded(data, path)
     told = re.match(r"sep=([,;\t])\r?\n", text)  # a line by which Excel tells the separator
     tables = [
-        _of_text(text, path, separator)
+        _of_text(text, path, separator, encoding)
         for separator in (_SEPARATORS if told is None else told[1])
         if separator == "," or separator in text
     ]
@@ -80,11 +82,11 @@ def decimal_comma(cells: Iterable[str]) -> bool:
     )
 
 
-def _decoded(data: bytes, path: str) -> str:
+def _decoded(data: bytes, path: str) -> tuple[str, str]:
     try:
         if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-            return data.decode("utf-16")
-        return data.decode("utf-8-sig")
+            return data.decode("utf-16"), "utf-16"
+        return data.decode("utf-8-sig"), "utf-8"
     except UnicodeDecodeError as error:
         hint = "save it as UTF-8 CSV"
         fault = RawFileError(path, "neither UTF-8 nor ANSI (cp1252)", None, None, None, hint)
@@ -96,10 +98,10 @@ def _decoded(data: bytes, path: str) -> str:
             raise fault from error
         if not all(c.isascii() or c.isalpha() or c in _SIGNS for c in text):
             raise fault from error
-        return text
+        return text, _ANSI
 
 
-def _of_text(text: str, path: str, separator: str) -> RegisterTable:
+def _of_text(text: str, path: str, separator: str, encoding: str) -> RegisterTable:
     rows = csv.reader(io.StringIO(text, newline=""), delimiter=separator)
     read: list[tuple[int, list[str]]] = []
     try:
@@ -108,7 +110,7 @@ def _of_text(text: str, path: str, separator: str) -> RegisterTable:
         raise RawFileError(path, f"not CSV: {error}", rows.line_num) from error
     if read and read[0][1] in (["sep=" + separator], ["sep=", ""]):
         read = read[1:]
-    return _table(read, separator)
+    return replace(_table(read, separator), encoding=encoding)
 
 
 def _table(rows: Sequence[tuple[int, list[str]]], separator: str) -> RegisterTable:

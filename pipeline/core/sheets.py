@@ -7,7 +7,7 @@ import math
 import struct
 import zipfile
 import zlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import date, datetime, time, timedelta
 from xml.sax.saxutils import escape
 
@@ -22,6 +22,10 @@ _DAMAGED = (
     zipfile.BadZipFile, zlib.error, struct.error, NotImplementedError, RuntimeError, OSError,
     EOFError, ValueError,
 )  # fmt: skip
+_MAIN = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
+_OFFICE = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
+_PACKAGE = "http://schemas.openxmlformats.org/package/2006"
+_KIND = "application/vnd.openxmlformats-officedocument.spreadsheetml"
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # of every part: same rows, same bytes
 
 Cell = str | float | int | bool | date | datetime | time | timedelta
@@ -62,32 +66,35 @@ def as_text(cell: Cell) -> str:
     return " ".join(str(cell).split())
 
 
-def write_sheet(name: str, rows: Sequence[Sequence[str | float]]) -> bytes:
-    """Return an .xlsx workbook of one sheet; texts are inline, so that none is ever a formula."""
-    lines = "".join(
-        f'<row r="{at}">' + "".join(map(_cell_xml, row)) + "</row>"
-        for at, row in enumerate(rows, start=1)
+def write_workbook(sheets: Mapping[str, Sequence[Sequence[str | float]]]) -> bytes:
+    """Return an .xlsx workbook; texts are inline, so that none is ever a formula."""
+    names = list(enumerate(sheets, start=1))
+    listed = "".join(
+        f'<sheet name="{escape(name, _QUOTE)}" sheetId="{at}" r:id="rId{at}"/>'
+        for at, name in names
     )
-    main = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
-    office = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
-    package = "http://schemas.openxmlformats.org/package/2006"
-    kind = "application/vnd.openxmlformats-officedocument.spreadsheetml"
     parts = {
-        "[Content_Types].xml": f'<Types xmlns="{package}/content-types">'
+        "[Content_Types].xml": f'<Types xmlns="{_PACKAGE}/content-types">'
         '<Default Extension="rels" '
         'ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
-        f'<Override PartName="/xl/workbook.xml" ContentType="{kind}.sheet.main+xml"/>'
-        f'<Override PartName="/xl/worksheets/sheet1.xml" ContentType="{kind}.worksheet+xml"/>'
-        "</Types>",
-        "_rels/.rels": f'<Relationships xmlns="{package}/relationships"><Relationship Id="rId1" '
-        f'Type="{office}/officeDocument" Target="xl/workbook.xml"/></Relationships>',
-        "xl/_rels/workbook.xml.rels": f'<Relationships xmlns="{package}/relationships">'
-        f'<Relationship Id="rId1" Type="{office}/worksheet" Target="worksheets/sheet1.xml"/>'
-        "</Relationships>",
-        "xl/workbook.xml": f'<workbook xmlns="{main}" xmlns:r="{office}"><sheets>'
-        f'<sheet name="{escape(name, _QUOTE)}" sheetId="1" r:id="rId1"/></sheets></workbook>',
-        "xl/worksheets/sheet1.xml": f'<worksheet xmlns="{main}"><sheetData>{lines}</sheetData>'
-        "</worksheet>",
+        f'<Override PartName="/xl/workbook.xml" ContentType="{_KIND}.sheet.main+xml"/>'
+        + "".join(
+            f'<Override PartName="/xl/worksheets/sheet{at}.xml" '
+            f'ContentType="{_KIND}.worksheet+xml"/>'
+            for at, _ in names
+        )
+        + "</Types>",
+        "_rels/.rels": _relations([("rId1", "officeDocument", "xl/workbook.xml")]),
+        "xl/_rels/workbook.xml.rels": _relations(
+            [(f"rId{at}", "worksheet", f"worksheets/sheet{at}.xml") for at, _ in names]
+        ),
+        "xl/workbook.xml": f'<workbook xmlns="{_MAIN}" xmlns:r="{_OFFICE}"><sheets>{listed}'
+        "</sheets></workbook>",
+        **{
+            f"xl/worksheets/sheet{at}.xml": f'<worksheet xmlns="{_MAIN}"><sheetData>'
+            f"{_rows_xml(sheets[name])}</sheetData></worksheet>"
+            for at, name in names
+        },
     }
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
@@ -95,6 +102,21 @@ def write_sheet(name: str, rows: Sequence[Sequence[str | float]]) -> bytes:
             head = '<?xml version="1.0" encoding="UTF-8" standalone="yes"?>\n'
             archive.writestr(zipfile.ZipInfo(part, _EPOCH), head + xml, zipfile.ZIP_DEFLATED)
     return out.getvalue()
+
+
+def _relations(targets: Sequence[tuple[str, str, str]]) -> str:
+    listed = "".join(
+        f'<Relationship Id="{name}" Type="{_OFFICE}/{kind}" Target="{target}"/>'
+        for name, kind, target in targets
+    )
+    return f'<Relationships xmlns="{_PACKAGE}/relationships">{listed}</Relationships>'
+
+
+def _rows_xml(rows: Sequence[Sequence[str | float]]) -> str:
+    return "".join(
+        f'<row r="{at}">' + "".join(map(_cell_xml, row)) + "</row>"
+        for at, row in enumerate(rows, start=1)
+    )
 
 
 _QUOTE = {'"': "&quot;"}

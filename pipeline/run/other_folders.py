@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable
+from itertools import pairwise
 
+_OF_TESTING_MACHINES = ("compression", "tension")
 _TESTING_MACHINES = ("instron", "zwick", "mts", "shimadzu", "utm")
 # What laboratories call a folder after: the instrument, or the test in other words.
 _ALSO = {
-    "compression": ("compressive", "druck", *_TESTING_MACHINES),
-    "tension": ("tensile", "zug", "stretch", "uniaxial", *_TESTING_MACHINES),
+    "compression": ("compressive", "compress", "druck", "druckversuch"),
+    "tension": ("tensile", "zug", "zugversuch", "stretch", "uniaxial"),
     "nanoindentation": ("indentation", "indenter", "hysitron", "nano", "piuma", "chiaro"),
     "permittivity": ("dielectric", "lcr", "impedance", "capacitance", "novocontrol"),
     "breakdown": ("dielectric-strength", "high-voltage", "hv", "ramp", "scope"),
@@ -40,8 +43,15 @@ def nearest_techniques(folder: str, techniques: Iterable[str]) -> list[str]:
     near = difflib.get_close_matches(name, there, n=1)
     if near:
         return near
-    parts = {*name.split("-"), name}
-    return [key for key in there if key in parts or parts & set(_ALSO.get(key, ()))]
+    machines = [k for k in _OF_TESTING_MACHINES if set(name.split("-")) & set(_TESTING_MACHINES)]
+    return techniques_said(name, there) or machines
+
+
+def techniques_said(text: str, techniques: Iterable[str]) -> list[str]:
+    """Name the techniques that the words of a text say, by their names or other usual ones."""
+    words = re.split(r"[\W_]+", text.casefold())
+    parts = {*words, *map("-".join, pairwise(words))}
+    return [key for key in techniques if key in parts or parts & set(_ALSO.get(key, ()))]
 
 
 def is_picture(path: str) -> bool:

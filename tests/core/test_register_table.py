@@ -11,7 +11,7 @@ from deamat.core.errors import RawFileError
 from deamat.core.instruments import Gauge
 from deamat.core.register import Register, read_register
 from deamat.core.register_table import read_table
-from deamat.core.sheets import read_sheets, write_sheet
+from deamat.core.sheets import read_sheets, write_workbook
 
 _PATH = "demo/compression/specimens.csv"
 _PLAIN = (
@@ -64,7 +64,7 @@ def test_a_workbook_reads_the_same_whatever_other_sheets_say() -> None:
         ["s1", "gel-a", "gel-a/s1.csv", 28.5, 12.25, "schön", ""],
         ["s2", "gel-a", "gel-a/s2.csv", 28.4, "12.5", "", ""],
     ]
-    read = _read(write_sheet("Specimens", rows))
+    read = _read(write_workbook({"Specimens": rows}))
     assert read.errors == ()
     assert [s.numbers for s in read.specimens] == [
         s.numbers for s in _read(_PLAIN.encode()).specimens
@@ -102,20 +102,20 @@ def test_fields_beyond_the_header_must_be_empty() -> None:
 
 
 def test_a_damaged_workbook_is_refused() -> None:
-    data = write_sheet("s", [["specimen", "material"]])
+    data = write_workbook({"s": [["specimen", "material"]]})
     with pytest.raises(RawFileError, match="a workbook that cannot be read"):
         _read(data[:200])
     with pytest.raises(RawFileError, match="no sheet has the columns specimen and material"):
-        _read(write_sheet("s", [["a", "b"]]))
+        _read(write_workbook({"s": [["a", "b"]]}))
 
 
 def test_a_written_sheet_says_what_was_written() -> None:
     rows: list[list[str | float]] = [["=1+1", 'a<b&"c"'], [1.5, "  x"], ["", 2.0]]
-    data = write_sheet("Sheet <1>", rows)
+    data = write_workbook({"Sheet <1>": rows})
     assert read_sheets(data, "x.xlsx") == [
         ("Sheet <1>", [["=1+1", 'a<b&"c"'], ["1.5", "x"], ["", "2"]])
     ]
-    assert data == write_sheet("Sheet <1>", rows)
+    assert data == write_workbook({"Sheet <1>": rows})
     with zipfile.ZipFile(BytesIO(data)) as archive:
         assert b"<f>" not in archive.read("xl/worksheets/sheet1.xml")
 

@@ -28,6 +28,7 @@ from deamat.run.check.found import Checked, Column
 from deamat.run.check.nearest import nearest_form, table_found
 from deamat.run.check.reading import Asked, reading_of
 from deamat.run.check.row import Place, place_of, registered
+from deamat.run.recognise import recordings_of
 from deamat.techniques import TECHNIQUES
 
 _ROWS = 3
@@ -91,20 +92,11 @@ def _check(path: Path, asked: Asked, config: Config) -> Checked:
     file = RawFile(str(path), data, place.info.ends_open, place=within)
     technique = asked.technique or place.technique
     tried = [key for key in ([technique] if technique else ASKED) if key in ASKED]
-    found: dict[str, Recording] = {}
-    faults: list[RawFileError] = []
-    for key in tried:
-        try:
-            recording = _read(replace(file, technique=key), asked, place, config)
-        except RawFileError as error:
-            faults.append(error)
-            continue
-        if technique or _fits(key, recording):
-            found[key] = recording
+    found, faults = recordings_of(
+        file, tried, lambda one: _read(one, asked, place, config), named=bool(technique)
+    )
     if not found:
         return _unread(file, technique, faults, asked)
-    by_label = {key: one for key, one in found.items() if not _by_unit(one)}
-    found = by_label or found
     return _read_well(file, found, asked, place, config)
 
 
@@ -120,18 +112,6 @@ def _read(file: RawFile, asked: Asked, place: Place, config: Config) -> Recordin
 
 def _form_of(file: RawFile, named: str | None, asked: Asked) -> Format:
     return by_name(named, asked.exports) if named else detect(file, asked.exports)
-
-
-def _by_unit(recording: Recording) -> bool:
-    return any(flag.name == "label-by-unit" for flag in recording.flags)
-
-
-def _fits(technique: str, recording: Recording) -> bool:
-    """Say whether a recording holds what a technique looks at."""
-    columns = recording.columns
-    if technique == "viscosity":
-        return "viscosity_Pas" in columns
-    return any(all(name in columns for name in need) for need in ASKED[technique].needs)
 
 
 def _unread(file: RawFile, technique: str, errors: Sequence[RawFileError], asked: Asked) -> Checked:

@@ -26,7 +26,7 @@ TECHNIQUE = Technique(
     reduce=reduce,
     summarise=summarise,
     figure=figure,
-    register=RegisterForm(notes=("censored",)),
+    register=RegisterForm(notes=("censored",), asked=("thickness_m",)),
     measures=("voltage",),
 )
 

@@ -19,6 +19,6 @@ TECHNIQUE = Technique(
     reduce=reduce,
     summarise=summarise,
     figure=figure,
-    register=RegisterForm(notes=("tip",)),
+    register=RegisterForm(notes=("tip",), asked=("tip", "tip_radius_m")),
     measures=("force", "displacement"),
 )

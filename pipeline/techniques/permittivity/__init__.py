@@ -11,6 +11,7 @@ Source: ASTM D150; Sikulskyi et al. 2022, Front. Robot. AI 9:1034914, section 3.
 
 from __future__ import annotations
 
+from deamat.core.register import RegisterForm
 from deamat.core.technique import Technique
 from deamat.techniques.permittivity.config import MODULUS, YIELDS, PermittivityConfig
 from deamat.techniques.permittivity.figure import figure
@@ -33,5 +34,14 @@ TECHNIQUE = Technique(
     reduce=reduce,
     summarise=summarise,
     figure=figure,
+    register=RegisterForm(
+        asked=(
+            "thickness_m",
+            "plate_length_m",
+            "plate_width_m",
+            "micrometer_force_N",
+            "anvil_diameter_m",
+        )
+    ),
     measures=("impedance",),
 )

@@ -19,6 +19,6 @@ TECHNIQUE = Technique(
     reduce=reduce,
     summarise=summarise,
     figure=figure,
-    register=RegisterForm(notes=("mixed_at", "sample")),
+    register=RegisterForm(notes=("mixed_at", "sample"), asked=("mixed_at",)),
     measures=("torque",),
 )
