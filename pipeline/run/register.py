@@ -1,4 +1,4 @@
-"""`deamat register`: the one command that writes into `raw/`, and only a manifest."""
+"""`deamat register`: write or extend the manifest of a campaign."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ _DOCUMENTS = (".md", ".pdf", ".rst")
 
 @dataclass
 class Added:
-    """What a look at a folder came to, told in lines.
+    """The outcome of a look at a folder, in lines of text.
 
     Parameters
     ----------
