@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+
+_NAMED = 4  # further faults of a file that are said in full
 
 
 class PipelineError(Exception):
@@ -19,6 +21,7 @@ class RawFileError(PipelineError):
     line, column : where, counted from 1; `column` counts fields, not characters
     value : the text found there
     hint : what would make the file acceptable
+    others : what else is wrong with the file, in its order
     """
 
     def __init__(
@@ -29,29 +32,54 @@ class RawFileError(PipelineError):
         column: int | None = None,
         value: str | None = None,
         hint: str = "",
+        others: Sequence[RawFileError] = (),
     ) -> None:
-        super().__init__(path, reason, line, column, value, hint)
+        super().__init__(path, reason, line, column, value, hint, tuple(others))
         self.path = path
         self.reason = reason
         self.line = line
         self.column = column
         self.value = value
         self.hint = hint
+        self.others = tuple(others)
+
+    @classmethod
+    def together(cls, faults: Sequence[RawFileError]) -> RawFileError:
+        """Return the first of the faults of a file, with the others beside it."""
+        first, *others = faults
+        return cls(
+            first.path, first.reason, first.line, first.column, first.value, first.hint, others
+        )
+
+    @property
+    def within(self) -> str:
+        """`line 3, column 2`, as far as it is known."""
+        places = (("line", self.line), ("column", self.column))
+        return ", ".join(f"{name} {at}" for name, at in places if at is not None)
 
     @property
     def place(self) -> str:
         """`path, line 3, column 2`, as far as it is known."""
-        where = self.path
-        if self.line is not None:
-            where += f", line {self.line}"
-        if self.column is not None:
-            where += f", column {self.column}"
-        return where
+        return f"{self.path}, {self.within}" if self.within else self.path
+
+    @property
+    def found(self) -> str:
+        """The text found there, in brackets; empty where none is known."""
+        return "" if self.value is None else f" (found {self.value!r})"
+
+    @property
+    def further(self) -> str:
+        """The other faults in words, the first few of them in full; empty without any."""
+        if not self.others:
+            return ""
+        named = [f"{one.within}: {one.reason}{one.found}" for one in self.others[:_NAMED]]
+        rest = len(self.others) - len(named)
+        more = f"; and {rest} further" if rest else ""
+        return f"{len(self.others)} more: {'; '.join(named)}{more}"
 
     def __str__(self) -> str:
-        found = "" if self.value is None else f" (found {self.value!r})"
-        hint = f"; {self.hint}" if self.hint else ""
-        return f"{self.place}: {self.reason}{found}{hint}"
+        said = f"{self.place}: {self.reason}{self.found}"
+        return "; ".join(text for text in (said, self.hint, self.further) if text)
 
 
 class ConfigError(PipelineError):

@@ -115,6 +115,7 @@ UNITS: dict[str, tuple[str, float, float]] = {
     "Mohm": ("ohm", 1e6, 0.0),
     "S/m": ("S/m", 1.0, 0.0),
     "S/cm": ("S/m", 100.0, 0.0),
+    "S_per_m": ("S/m", 1.0, 0.0),
     "rad": ("rad", 1.0, 0.0),
     "deg": ("rad", math.pi / 180.0, 0.0),
     "V/m": ("V/m", 1.0, 0.0),

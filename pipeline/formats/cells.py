@@ -100,19 +100,28 @@ def read_cells(
 
     Raises
     ------
-    RawFileError : naming line, column, value, reason and hint of the first cell that is no number
+    RawFileError : naming line, column, value, reason and hint of the first cell that is no number,
+        and the others that are none
     """
     lines = list(enumerate(text.split("\n"), start=first_line))
     if dialect.segmented:
         lines = [(at, line) for at, line in lines if line.strip()]
     table = np.empty((len(lines), columns))
+    faults: list[RawFileError] = []
     for row, (at, line) in enumerate(lines):
-        fields = _split(file, line, at, columns, dialect, last=row == len(lines) - 1)
+        try:
+            fields = _split(file, line, at, columns, dialect, last=row == len(lines) - 1)
+        except RawFileError as error:
+            faults.append(error)
+            continue
         for column, field in enumerate(fields):
             value = _value(field, dialect)
             if value is None:
-                raise _refusal(file, line, at, fields, column, dialect)
+                faults.append(_refusal(file, line, at, fields, column, dialect))
+                break
             table[row, column] = value
+    if faults:
+        raise RawFileError.together(faults)
     if not ended:
         raise RawFileError(
             file.path,

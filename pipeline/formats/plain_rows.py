@@ -149,7 +149,7 @@ def _values(
     quick = None if columns is None else _quick(columns, choice)
     if quick is not None:
         return quick
-    split = _split(file, rows, choice, lines[: choice.heading.first])
+    split, numbers, faults = _split(file, rows, choice, lines[: choice.heading.first])
     cells = {t.name: [normal(row[t.column]) for row in split] for t in choice.used}
     try:
         decimal = choice.decimal or decimal_mark(
@@ -165,16 +165,19 @@ def _values(
         ) from error  # fmt: skip
     values, dropped = {}, {}
     for taken in choice.used:
-        column, fault = _column(cells[taken.name], decimal, taken.unit)
-        if column is not None:
-            values[taken.name] = column
-            continue
-        at, cell, reason, hint = fault
+        column, wrong = _column(cells[taken.name], decimal, taken.unit)
         if taken in choice.needed:
-            raise RawFileError(
-                file.path, reason, choice.heading.first + 1 + at, taken.column + 1, cell, hint
-            )
-        dropped[taken.label] = f"line {choice.heading.first + 1 + at}: {reason}"
+            faults += [
+                RawFileError(file.path, reason, numbers[at], taken.column + 1, cell, hint)
+                for at, cell, reason, hint in wrong
+            ]
+        elif wrong:
+            dropped[taken.label] = f"line {numbers[wrong[0][0]]}: {wrong[0][2]}"
+            continue
+        values[taken.name] = column
+    if faults:
+        faults.sort(key=lambda fault: (fault.line or 0, fault.column or 0))
+        raise RawFileError.together(faults)
     return values, dropped
 
 
@@ -204,61 +207,77 @@ def _quick(
             return None
         else:
             cells = [normal(cell.strip()) for cell in columns[taken.column]]
-            slow, (at, _, reason, _) = _column(cells, decimal, taken.unit)
-            if slow is not None:
-                values[taken.name] = slow
-            else:
+            slow, wrong = _column(cells, decimal, taken.unit)
+            if wrong:
+                at, _, reason, _ = wrong[0]
                 dropped[taken.label] = f"line {choice.heading.first + 1 + at}: {reason}"
+            else:
+                values[taken.name] = slow
     return values, dropped
 
 
 def _split(
     file: RawFile, rows: Sequence[str], choice: Choice, above: Sequence[str]
-) -> list[list[str]]:
-    """Split rows into fields, insisting on one length."""
+) -> tuple[list[list[str]], list[int], list[RawFileError]]:
+    """Split rows into fields of one length; give their lines too, and what is wrong with others."""
     width = 0
     split: list[list[str]] = []
+    lines: list[int] = []
+    faults: list[RawFileError] = []
     for at, row in enumerate(rows, start=choice.heading.first + 1):
         cells = fields(row, choice.heading.separator)
-        if not any(cells):
-            raise RawFileError(
-                file.path, "a blank line between the rows", at,
-                hint="export the file again; one file holds one run",
-            )  # fmt: skip
         width = width or len(cells)
-        if len(cells) != width:
-            if not any(map(looks_numeric, cells)):
-                raise text_row(file.path, row, at, above)
-            few = len(cells) < width
-            last = "; the file seems cut" if few and at == choice.heading.first + len(rows) else ""
-            raise RawFileError(
-                file.path, f"too {'few' if few else 'many'} fields: {len(cells)} where the first "
-                f"row has {width}{last}", at, min(len(cells), width + 1),
-                cells[-1] if few else cells[width], "export the file again",
-            )  # fmt: skip
-        if not any(looks_numeric(cells[taken.column]) for taken in choice.needed) and not any(
-            map(looks_numeric, cells)
-        ):
-            raise text_row(file.path, row, at, above)
+        last = at == choice.heading.first + len(rows)
+        fault = _fault_of_row(file.path, cells, width, at, last=last)
+        if fault is None and not any(looks_numeric(cells[t.column]) for t in choice.needed):
+            fault = None if any(map(looks_numeric, cells)) else text_row(file.path, row, at, above)
+        elif fault is not None and any(cells) and not any(map(looks_numeric, cells)):
+            fault = text_row(file.path, row, at, above)
+        if fault is not None:
+            faults.append(fault)
+            continue
         split.append(cells)
-    return split
+        lines.append(at)
+    return split, lines, faults
+
+
+def _fault_of_row(
+    path: str, cells: Sequence[str], width: int, at: int, *, last: bool
+) -> RawFileError | None:
+    """Say what is wrong with the length of a row, if anything."""
+    if not any(cells):
+        return RawFileError(
+            path, "a blank line between the rows", at,
+            hint="export the file again; one file holds one run",
+        )  # fmt: skip
+    if len(cells) == width:
+        return None
+    few = len(cells) < width
+    cut = "; the file seems cut" if few and last else ""
+    return RawFileError(
+        path, f"too {'few' if few else 'many'} fields: {len(cells)} where the first row has "
+        f"{width}{cut}", at, min(len(cells), width + 1), cells[-1] if few else cells[width],
+        "export the file again",
+    )  # fmt: skip
 
 
 def _column(
     cells: Sequence[str], decimal: str, unit: str
-) -> tuple[FloatArray | None, tuple[int, str, str, str]]:
-    """Read the cells of one column, or say which one is no number and why."""
-    values = np.empty(len(cells))
+) -> tuple[FloatArray, list[tuple[int, str, str, str]]]:
+    """Read the cells of one column, and say which ones are no numbers and why."""
+    values = np.zeros(len(cells))
+    wrong: list[tuple[int, str, str, str]] = []
     clock = clock_unit(unit)
     for at, cell in enumerate(cells):
         text = seconds_text(cell, clock) if clock else number_text(cell, decimal)
         if not is_number(text) or not abs(float(text)) < OVER_RANGE:
-            return None, (at, cell, *_why(cell, decimal))
+            wrong.append((at, cell, *_why(cell, decimal)))
+            continue
         values[at] = float(text)
-    if clock and values[0] >= _OF_THE_DAY_s:
-        return None, (0, cells[0], "it may be a time of the day or an elapsed time",
-                      "export elapsed times, in seconds")  # fmt: skip
-    return values, (0, "", "", "")
+    if clock and not wrong and cells and values[0] >= _OF_THE_DAY_s:
+        wrong.append((0, cells[0], "it may be a time of the day or an elapsed time",
+                      "export elapsed times, in seconds"))  # fmt: skip
+    return values, wrong
 
 
 def _why(cell: str, decimal: str) -> tuple[str, str]:

@@ -39,9 +39,8 @@ def read_rewritten(file: RawFile, lines: Sequence[str], reader: str, shift: int 
             raise refused(file, nearest)
         recording = recording_of(file, lines, file.encoding, choice, ended=ended)
     except RawFileError as error:
-        line = None if error.line is None else max(error.line - shift, 1)
-        raise RawFileError(
-            file.path, error.reason, line, error.column, error.value, error.hint
+        raise RawFileError.together(
+            [_higher(one, shift) for one in (error, *error.others)]
         ) from error
     source = recording.source
     source = replace(
@@ -51,3 +50,9 @@ def read_rewritten(file: RawFile, lines: Sequence[str], reader: str, shift: int 
         reader=reader,
     )
     return replace(recording, source=source)
+
+
+def _higher(error: RawFileError, shift: int) -> RawFileError:
+    """Name the line of the file instead of that of its rewritten lines."""
+    line = None if error.line is None else max(error.line - shift, 1)
+    return RawFileError(error.path, error.reason, line, error.column, error.value, error.hint)

@@ -43,6 +43,14 @@ def stamped() -> list[bytes]:
     return [f"timestamp,viscosity_Pas\n{stamp},1\n".encode() for stamp in STAMPS]
 
 
+def computed() -> list[bytes]:
+    """A spectrometer's text under every pair that it may show."""
+    text, pair = FILES["novocontrol"], "Eps'    \t Eps''   "
+    assert pair in text
+    pairs = (pair, "Eps'\tTan(Delta)", "Eps'\tSig' [S/cm]", "Modulus'\tModulus''")
+    return [text.replace(pair, other).encode() for other in pairs]
+
+
 GOOD: dict[str, list[bytes]] = {
     "antonpaar": [ANTON_PAAR.encode()],
     "flow_tab": [TAB.encode()],
@@ -59,6 +67,7 @@ GOOD: dict[str, list[bytes]] = {
     ),
     "lcr_csv": plain_sweeps(),
     **{name: [text.encode()] for name, text in FILES.items()},
+    "novocontrol": computed(),
     **{name: [sample.data] for name, sample in BY_NAME.items()},
 }
 

@@ -127,7 +127,8 @@ def _unread(file: RawFile, technique: str, errors: Sequence[RawFileError], asked
     if not nearest and not error.column and not is_binary(file.data):
         nearest = nearest_form(file) or table_found(file)
         hint += f"; or declare its form: deamat learn {shlex.quote(file.path)}"
-    faults = dict.fromkeys([_said(error), *(map(_said, errors) if technique else ())])
+    every = [error, *error.others, *(errors if technique else ())]
+    faults = dict.fromkeys(map(_said, every))
     return Checked(
         file.path, read=False, faults=tuple(faults), hint=hint, nearest=nearest,
         encoding=_encoding(file),
@@ -143,11 +144,7 @@ def _encoding(file: RawFile) -> str:
 
 def _said(error: RawFileError) -> str:
     """A fault with its place in the file, without the file's name."""
-    where = "".join(
-        f"{name} {at}, " for name, at in (("line", error.line), ("column", error.column)) if at
-    )
-    found = "" if error.value is None else f" (found {error.value!r})"
-    return f"{where.removesuffix(', ')}: {error.reason}{found}" if where else error.reason + found
+    return f"{error.within}: {error.reason}{error.found}".removeprefix(": ")
 
 
 def _read_well(

@@ -10,6 +10,7 @@ from deamat.run.check.found import Checked, Column, Reading
 from deamat.run.check.preview import preview
 
 _WIDE = 110
+_FAULTS = 8  # of a file that are shown
 
 
 def text(checked: Checked) -> str:
@@ -21,7 +22,9 @@ def _lines(checked: Checked) -> Iterator[str]:
     yield checked.path
     if not checked.read:
         yield f"  NOT READ   {checked.faults[0]}"
-        yield from (f"             {fault}" for fault in checked.faults[1:])
+        yield from (f"             {fault}" for fault in checked.faults[1:_FAULTS])
+        if len(checked.faults) > _FAULTS:
+            yield f"             and {len(checked.faults) - _FAULTS} more (--json lists them all)"
         if checked.nearest:
             yield f"  nearest    {checked.nearest}"
         if checked.hint:
