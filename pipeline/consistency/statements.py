@@ -48,6 +48,12 @@ _LENGTH = re.compile(
     rf"(?:.*: ?)?(?:(?:specimen|sample|cylinder|probe(?:n)?|test ?piece) ?)?"
     rf"({'|'.join(_LENGTHS)})(?: [a-z]0)?(?: ?[(\[](.+)[)\]])?"
 )
+_DURATION = re.compile(
+    r"(?:.*: ?)?(?:(?:test|run|total|measurement|measuring) ?)?(?:duration|dauer|laufzeit)"
+    r"(?: ?[(\[](.+)[)\]])?"
+)
+_STATED = re.compile(r"(.+?) ?[:=] ?(\d\S* ?\S*)")  # of a remark that is a line of its own
+_DURATION_OFF = 2.0  # times, either way: a log may have been stopped, or begun, some time apart
 _VALUE = re.compile(r"([-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?) ?(\S+)?")
 _SLASHED = re.compile(r"(\d{1,2})/(\d{1,2})/(\d{4})\b.*")
 _MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
@@ -69,6 +75,7 @@ def against_row(recording: Recording, specimen: Specimen) -> tuple[Flag, ...]:
         *_stamp(recording.metadata, specimen),
         *_speed(recording.columns, specimen),
         *_holes(recording.columns),
+        *_duration(recording),
     )
 
 
@@ -131,6 +138,29 @@ def _lengths(metadata: Mapping[str, str], specimen: Specimen) -> Iterator[Flag]:
                 "header-disagrees",
                 f"the file says {stated.key} {stated.text}, which is {ratio:.4g} times the "
                 f"{stated.word} of its row",
+            )
+
+
+def _duration(recording: Recording) -> Iterator[Flag]:
+    """Hold how long a run took, as its file says, against its column of time."""
+    if "time_s" not in recording.columns or "viscosity_Pas" not in recording.columns:
+        return
+    span = float(np.ptp(recording.columns["time_s"])) if recording.columns["time_s"].size else 0.0
+    for key, text in recording.metadata.items():
+        remark = _STATED.fullmatch(text) if _DURATION.fullmatch(key.casefold()) is None else None
+        name, told = (remark[1], remark[2]) if remark else (key, text)
+        found, value = _DURATION.fullmatch(name.casefold()), _VALUE.fullmatch(told)
+        if found is None or value is None:
+            continue
+        unit = name[found.start(1) : found.end(1)] if found[1] else (value[2] or "")
+        if not known(unit) or si_factor(unit)[0] != "s":
+            continue
+        stated_s = float(value[1]) * si_factor(unit)[1]
+        if stated_s > 0 and not 1 / _DURATION_OFF < span / stated_s < _DURATION_OFF:
+            yield Flag(
+                "time-unit",
+                f"the file says {name} {told}, and its column of time spans {span:.4g} s, "
+                f"{span / stated_s:.4g} times that: another unit of time?",
             )
 
 

@@ -12,6 +12,7 @@ from deamat.consistency.rows import flags_of_row
 from deamat.consistency.seen import Seen
 from deamat.consistency.siblings import siblings_of_rows
 from deamat.consistency.swaps import swapped_files
+from deamat.consistency.time_units import time_units
 from deamat.core.errors import RawFileError
 from deamat.core.flags import Flag
 from deamat.core.recording import Source, Specimen
@@ -68,6 +69,7 @@ def together(
     """
     specimens = [member.specimen for member in members]
     labels = {m.specimen.id: m.seen.label for m in members if m.seen is not None}
+    measured = [m.measurement for m in members if m.measurement is not None]
     flags: dict[str, list[Flag]] = defaultdict(list)
     for member in members:
         flags[member.specimen.id] += flags_of_row(member.specimen, materials)
@@ -77,7 +79,8 @@ def together(
     for more in (
         siblings_of_rows(specimens),
         labels_against_rows(specimens, labels),
-        swapped_files([m.measurement for m in members if m.measurement is not None]),
+        swapped_files(measured),
+        time_units(measured),
         copied,
     ):
         for specimen, told in more.items():

@@ -126,6 +126,7 @@ SEVERITY_OF: dict[str, Severity] = {
     "thickness-dependence": "warning",
     "thickness-under-force": "info",
     "time-not-increasing": "warning",
+    "time-unit": "serious",
     "tip-not-rigid": "warning",
     "toe": "warning",
     "torque-not-recorded": "info",

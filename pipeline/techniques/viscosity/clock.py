@@ -57,6 +57,26 @@ def since_mixing_s(specimen: Specimen, recording: Recording, timezone: str) -> F
     return elapsed
 
 
+def refuse_impossible_end(time_s: FloatArray, possible_s: tuple[float, float]) -> None:
+    """Refuse a run that ends too early or too late after mixing for any cure.
+
+    Raises
+    ------
+    FitRefused : so it does
+    """
+    low, high = possible_s
+    if not time_s.size or low <= time_s[-1] <= high:
+        return
+    end_s = float(time_s[-1])
+    side = f"before {low:g} s" if end_s < low else f"after {high / _DAY_S:g} days"
+    raise FitRefused(
+        f"the run ends {end_s:g} s after mixing ({end_s / _DAY_S:.3g} days), {side}: its time is "
+        "in another unit, such as minutes for seconds; correct the unit over the column, or "
+        "`run_s` in [viscosity]",
+        {"end_s": end_s},
+    )
+
+
 def _zone(name: str) -> tzinfo:
     if name == "UTC":
         return UTC

@@ -29,6 +29,7 @@ YIELDS = (
 )
 # Refused by name where a run gives nothing; the others are only asked of some liquids.
 ALWAYS = (VISCOSITY, DOUBLING)
+ALWAYS_OF_FLOW_CURVES = (VISCOSITY, CONSISTENCY, INDEX)
 
 
 class RateFactor(Declared):
@@ -61,6 +62,10 @@ class ViscosityConfig(Declared):
     )
     torque_window: tuple[float, float] = Field(
         default=(0.10, 1.0), description="fraction of full torque within which a reading counts"
+    )
+    run_s: tuple[float, float] = Field(
+        default=(60.0, 604800.0),
+        description="how long after mixing a run may end; outside, its time is in another unit",
     )
     min_readings: int = Field(default=8, ge=4, description="fewest readings a law is fitted to")
     laws: tuple[Literal["polynomial", "exponential", "power-law-to-gel"], ...] = Field(
@@ -116,6 +121,11 @@ class ViscosityConfig(Declared):
         description="standard uncertainty of n beyond the measured shear rates, for a power law "
         "that bends there",
     )
+    max_stress_contradiction: float = Field(
+        default=0.05,
+        gt=0,
+        description="by how much stress over rate may differ from the viscosity of a flow curve",
+    )
     max_sweep_drift: float = Field(
         default=0.1,
         gt=0,
@@ -142,7 +152,7 @@ class ViscosityConfig(Declared):
 
     @model_validator(mode="after")
     def _ordered(self) -> ViscosityConfig:
-        for name in ("window_s", "torque_window"):
+        for name in ("window_s", "torque_window", "run_s"):
             low, high = getattr(self, name)
             if not 0 <= low < high:
                 raise ValueError(f"{name} must rise from 0 or more, not {low:g} to {high:g}")

@@ -63,6 +63,7 @@ def flow_curve_values(
         bad = lines_text(columns["line"][~good])
         flags = (Flag("not-positive", f"rate or viscosity of zero or less: lines {bad} left out"),)
     kept = {name: values[good] for name, values in columns.items()}
+    _refuse_contradiction(kept, config.max_stress_contradiction)
     values: list[MeasuredValue] = []
     refusals: list[Refusal] = []
     groups = _at_each_temperature(kept, config)
@@ -84,6 +85,26 @@ def flow_curve_values(
             break
     readings = FlowReadings(kept["shear_rate_per_s"], kept["viscosity_Pas"])
     return FlowResult(tuple(values), tuple(refusals), readings)
+
+
+def _refuse_contradiction(columns: Mapping[str, FloatArray], most: float) -> None:
+    """Refuse a file whose stress, rate and viscosity are not in units that belong together.
+
+    Raises
+    ------
+    FitRefused : stress over rate is another viscosity
+    """
+    stress = columns.get("shear_stress_Pa")
+    if stress is None or not len(stress):
+        return
+    ratio = float(np.median(stress / columns["shear_rate_per_s"] / columns["viscosity_Pas"]))
+    if abs(ratio - 1.0) > most:
+        raise FitRefused(
+            f"stress over shear rate is {ratio:.4g} times the viscosity beside it: one of the "
+            "three is in another unit (a rate in 1/min is 60 times one in 1/s); correct the unit "
+            "over the column",
+            {"stress_over_rate_over_viscosity": ratio},
+        )
 
 
 def _pair(rates: Condition) -> tuple[float, float]:

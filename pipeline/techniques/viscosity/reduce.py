@@ -9,9 +9,10 @@ from deamat.core.recording import Recording, Specimen
 from deamat.core.records import MeasuredValue, Measurement, Refusal
 from deamat.core.technique import Context
 from deamat.techniques.shared.outcome import nothing_measured, refusal
-from deamat.techniques.viscosity.clock import since_mixing_s
+from deamat.techniques.viscosity.clock import refuse_impossible_end, since_mixing_s
 from deamat.techniques.viscosity.config import (
     ALWAYS,
+    ALWAYS_OF_FLOW_CURVES,
     AT_PRINTING_RATE,
     DOUBLING,
     ViscosityConfig,
@@ -46,18 +47,21 @@ def reduce(
     config = context.config
     source = None if recording is None else recording.source
     readings: Readings | None = None
+    flows = recording is not None and "shear_rate_per_s" in recording.columns
     try:
         if recording is None:
             raise FitRefused("the register names no data file for this run; fill in `file`")
-        if "shear_rate_per_s" in recording.columns:
+        if flows:
             found = flow_curve_values(specimen, recording, config)
             return Measurement(specimen, found.values, found.refusals, found.readings, source)
         times = since_mixing_s(specimen, recording, context.timezone)
+        refuse_impossible_end(times, config.run_s)
         readings = audited(recording, times, context.machine, config)
         window = windowed(readings, config, stated_temperature_K(specimen))
         fitted = fit_law([window], config)
     except FitRefused as error:
-        return nothing_measured(specimen, ALWAYS, error, recording, readings)
+        keys = ALWAYS_OF_FLOW_CURVES if flows else ALWAYS
+        return nothing_measured(specimen, keys, error, recording, readings)
     shared = _viscometer(readings, context.machine)
     values_, refusals = _values(specimen, readings, window, fitted, config, shared)
     return Measurement(specimen, values_, refusals, readings, source)

@@ -11,6 +11,7 @@ from deamat.twin.situations import (
     registers,
     tension,
     viscosity,
+    viscosity_units,
 )
 from deamat.twin.situations.situation import Situation
 
@@ -22,6 +23,7 @@ SITUATIONS: dict[str, Situation] = {
         *breakdown.SITUATIONS,
         *nanoindentation.SITUATIONS,
         *viscosity.SITUATIONS,
+        *viscosity_units.SITUATIONS,
         *compression.SITUATIONS,
         *conditions.SITUATIONS,
         *registers.SITUATIONS,

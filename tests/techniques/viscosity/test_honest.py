@@ -229,6 +229,32 @@ def test_a_power_law_leaves_bubbles_out() -> None:
     )
 
 
+@pytest.mark.parametrize(
+    ("factor", "said"),
+    [(1.0 / 3600.0, "the run ends 12.5 s after mixing (0.000145 days), before 60 s"),
+     (60.0, "the run ends 2.7e+06 s after mixing (31.2 days), after 7 days")],
+)  # fmt: skip
+def test_a_run_that_ends_when_no_cure_can_is_refused(factor: float, said: str) -> None:
+    measured = reduce({**run(RISES), "time_s": factor * TIMES})
+    assert measured.values == ()
+    assert measured.refusals[0].reason.startswith(said)
+    assert "`run_s` in [viscosity]" in measured.refusals[0].reason
+
+
+def test_a_flow_curve_whose_stress_contradicts_its_viscosity_is_refused() -> None:
+    rates = np.geomspace(0.1, 100.0, 13)
+    columns = {
+        "shear_rate_per_s": 60.0 * rates, "viscosity_Pas": 20.0 * rates**-0.3,
+        "shear_stress_Pa": 20.0 * rates**0.7,
+    }  # fmt: skip
+    measured = reduce(columns)
+    assert {r.key for r in measured.refusals} == {"viscosity", "flow_consistency", "flow_index"}
+    assert measured.refusals[0].reason.startswith(
+        "stress over shear rate is 0.01667 times the viscosity beside it"
+    )
+    assert reduce({**columns, "shear_rate_per_s": rates}).values != ()
+
+
 @pytest.mark.shared
 def test_real_resin_curves_agree_with_their_readings(shared: Path) -> None:
     folder = shared / "real" / "resin-cure-fdboost" / "viscosity"
