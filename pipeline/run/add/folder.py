@@ -37,11 +37,13 @@ class Added:
 
     Parameters
     ----------
+    taken : files that were taken over now
     there : files of the campaign that the folder holds as well
     faulty : a row that was filled in does not hold
     """
 
     lines: list[str] = field(default_factory=list)
+    taken: set[str] = field(default_factory=set)
     there: list[str] = field(default_factory=list)
     faulty: bool = False
 
@@ -116,7 +118,7 @@ def add(folders: Folders, source: Path, wish: Wish) -> Added:
     decided = {row["file"]: row.get("technique", MISSING) for row in tables[UNSURE].rows}
     unsure: list[Row] = []
     for path in files:
-        if path not in listed and _may_be_data(path):
+        if path not in listed | added.taken and _may_be_data(path):
             said = decided.get(path, MISSING)
             for facts in _facts(path, said, campaign, look):
                 if len(facts.techniques) > 1:
@@ -171,6 +173,7 @@ def _taken(place: Place, table: Proposal, look: _Look) -> list[Row]:
             look.added.say("NOT TAKEN", f"{row['file']}: {error}")
             waiting.append(row)
             continue
+        look.added.taken.add(path)
         target = f"{place.campaign}/{place.technique.key}/{name}"
         look.added.say("moved" if look.wish.move else "copied", f"{row['file']} -> {target}")
         if not source.resolve().is_relative_to(place.folder.resolve()):
