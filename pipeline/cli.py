@@ -13,6 +13,7 @@ import click
 from deamat import __version__
 from deamat.commands.add import add
 from deamat.commands.check import check
+from deamat.commands.exclude import exclude
 from deamat.commands.init import init
 from deamat.commands.learn import learn
 from deamat.commands.options import (
@@ -265,7 +266,7 @@ def simulate(
     click.echo(f"SYNTHETIC campaign {written}, its truth {truth}")
 
 
-for command in (add, check, init, learn, register):
+for command in (add, check, exclude, init, learn, register):
     cli.add_command(command)
 
 

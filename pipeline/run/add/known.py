@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from deamat.core.config import Config
 from deamat.core.errors import ConfigError
-from deamat.core.recording import Specimen
-from deamat.core.register import SHEET, read_register
+from deamat.core.register import SHEET, Register, read_register
+from deamat.core.technique import AnyTechnique
 from deamat.formats.rawfile import read_raw
 from deamat.run.add.rows import Known
 from deamat.run.folders import walk
@@ -70,21 +70,34 @@ def look_at_campaign(raw: Path, name: str, config: Config) -> Campaign:
         if not stat.odd:
             found.sizes.setdefault(stat.size, []).append(path)
     for key, technique in TECHNIQUES.items():
-        specimens: list[Specimen] = []
-        for ending in (".csv", ".xlsx", ".ods"):
-            file = f"{name}/{key}/{technique.register.file}".removesuffix(".csv") + ending
-            if (raw / file).is_file():
-                register = read_register(
-                    read_raw(raw, file), file, name, key, technique.required,
-                    config.instruments.gauges, technique.register,
-                )  # fmt: skip
-                specimens += register.specimens
-                found.rows |= {(path, "") for path, _ in register.errors if path}
+        registers = list(registers_of(raw, name, technique, config))
+        specimens = [specimen for register in registers for specimen in register.specimens]
+        errors = [error for register in registers for error in register.errors]
+        found.rows |= {(path, "") for path, _ in errors if path}
         found.rows |= {(s.file, s.notes.get(SHEET, "")) for s in specimens if s.file}
         found.known.materials |= {s.material for s in specimens}
         found.known.specimens[key] = {s.id.casefold() for s in specimens}
         found.known.constant[key] = _constant([s.notes for s in specimens])
     return found
+
+
+def registers_of(
+    raw: Path, campaign: str, technique: AnyTechnique, config: Config
+) -> Iterator[Register]:
+    """Read the registers of a technique in a campaign: one as a rule, none where it has none.
+
+    Raises
+    ------
+    RawFileError : one cannot be read
+    """
+    for ending in (".csv", ".xlsx", ".ods"):
+        name = technique.register.file.removesuffix(".csv") + ending
+        file = f"{campaign}/{technique.key}/{name}"
+        if (raw / file).is_file():
+            yield read_register(
+                read_raw(raw, file), file, campaign, technique.key, technique.required,
+                config.instruments.gauges, technique.register,
+            )  # fmt: skip
 
 
 def _constant(rows: list[Mapping[str, str]]) -> dict[str, str]:
