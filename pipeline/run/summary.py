@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+_ALIKE = 4  # materials of which the same is said once
 _LONG = 12  # more lines than this of one kind are counted, the rest is in `deamat audit`
 
 DEPARTURES = ("changed", "missing", "extra", "extended")  # from a manifest
@@ -22,7 +23,7 @@ def text(document: Mapping[str, Any]) -> str:
         "files      " + ", ".join(f"{n} {status}" for status, n in files.items()),
     ]
     if document["ignored"]:
-        lines.append(f"ignored {', '.join(document['ignored'])} (no campaign.toml)")
+        lines.append(f"ignored    {', '.join(document['ignored'])} (no campaign.toml)")
     lines.append(
         f"values     {document['values']} of {document['materials']} materials, "
         f"{len(document['refused'])} refused"
@@ -108,12 +109,24 @@ def _refusals(refused: Iterable[Mapping[str, Any]]) -> list[str]:
     for refusal in refused:
         place = (refusal["campaign"], refusal["material"], refusal["key"])
         groups.setdefault(place, []).append(refusal)
-    said = []
+    alike: dict[tuple[str, str], list[tuple[str, str]]] = {}
     for (campaign, material, key), mine in groups.items():
         who = mine[0]["specimen"] or campaign
         more = f" and {len(mine) - 1} more" if len(mine) > 1 else ""
-        said.append(f"{material} {key} ({who}{more}): {mine[0]['reason']}")
+        alike.setdefault((key, mine[0]["reason"]), []).append((material, f"{who}{more}"))
+    said = []
+    for (key, reason), found in alike.items():
+        if len(found) >= _ALIKE:
+            said.append(f"{key} of {_several([m for m, _ in found])}: {reason}")
+        else:
+            said += [f"{material} {key} ({who}): {reason}" for material, who in found]
     return said
+
+
+def _several(materials: Sequence[str]) -> str:
+    """Count materials of which the same is to be said, and name the first ones."""
+    more = ", ..." if len(materials) > _ALIKE else ""
+    return f"{len(materials)} materials ({', '.join(materials[:_ALIKE])}{more})"
 
 
 def flag_lines(flags: Sequence[Mapping[str, Any]]) -> list[str]:
@@ -123,16 +136,28 @@ def flag_lines(flags: Sequence[Mapping[str, Any]]) -> list[str]:
     counts = Counter(flag["severity"] for flag in flags)
     told = ", ".join(f"{n} {severity}" for severity, n in counts.items())
     lines = [f"flags      {told} (of a material each; `deamat card` has them in full)"]
-    worst = [f for f in flags if f["severity"] == "serious"]
-    lines += _some(
-        "SERIOUS",
-        [f"{f['material']} {', '.join(f['values'])}: {f['name']}: {f['detail']}" for f in worst],
-    )
+    lines += _some("SERIOUS", _worst([f for f in flags if f["severity"] == "serious"]))
     for severity in counts:
         names = Counter(f["name"] for f in flags if f["severity"] == severity)
         if severity != "serious":
             lines.append(f"{severity:<11}" + ", ".join(f"{k} ({n})" for k, n in names.items()))
     return lines
+
+
+def _worst(flags: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Say each serious flag in full; the same one of many materials once, with the first detail."""
+    alike: dict[tuple[str, str], list[Mapping[str, Any]]] = {}
+    for flag in flags:
+        alike.setdefault((flag["name"], ", ".join(flag["values"])), []).append(flag)
+    said = []
+    for (name, values), mine in alike.items():
+        if len(mine) >= _ALIKE:
+            who = _several([flag["material"] for flag in mine])
+            first = f"{mine[0]['material']}: {mine[0]['detail']}"
+            said.append(f"{values} of {who}: {name}: {first}")
+        else:
+            said += [f"{flag['material']} {values}: {name}: {flag['detail']}" for flag in mine]
+    return said
 
 
 def _violation(violation: Mapping[str, Any]) -> str:

@@ -119,3 +119,22 @@ def test_twelve_lines_of_a_kind_are_shown_and_the_rest_counted() -> None:
 def test_what_was_redone_is_counted_by_stage() -> None:
     assert summary.redone({}) == "redone     nothing"
     assert summary.redone({"measurement": 6, "card": 2}) == "redone     6 measurement, 2 card"
+
+
+def test_the_same_of_many_materials_is_said_once() -> None:
+    names = [f"gel-{letter}" for letter in "abcde"]
+    refused = [{**refusal("A1"), "material": name} for name in names]
+    flags = [
+        {
+            "severity": "serious", "name": "implausible", "material": name, "campaign": "soft-2026",
+            "values": ["tensile_modulus"], "detail": f"{i} kPa",
+        }
+        for i, name in enumerate(names)
+    ]  # fmt: skip
+    page = summary.text({**WELL, "refused": refused, "flags": flags}).splitlines()
+    who = "5 materials (gel-a, gel-b, gel-c, gel-d, ...)"
+    assert f"refused    tensile_modulus of {who}: 2 samples, 10 are needed" in page
+    assert f"SERIOUS    tensile_modulus of {who}: implausible: gel-a: 0 kPa" in page
+    few = summary.text({**WELL, "refused": refused[:3], "flags": flags[:3]}).splitlines()
+    assert "refused    gel-c tensile_modulus (A1): 2 samples, 10 are needed" in few
+    assert "SERIOUS    gel-c tensile_modulus: implausible: 2 kPa" in few
