@@ -85,18 +85,18 @@ def manifest_of(
         return compare({}, found), None
     try:
         text = content_of(path, folder, inputs).decode("utf-8")
-        return compare(parse_manifest(text, path), found, partial(extended, folder)), None
+        return compare(parse_manifest(text, path), found, partial(extended, folder, inputs)), None
     except UnicodeDecodeError as error:
         return compare({}, found), RawFileError(path, f"not UTF-8: {error}")
     except RawFileError as error:
         return compare({}, found), error
 
 
-def extended(folder: Path, name: str, sha256: str) -> bool:
+def extended(folder: Path, inputs: Mapping[str, Input], name: str, sha256: str) -> bool:
     """Say whether a register of a campaign is the one registered with rows appended."""
     if name.count("/") != 1 or name.partition("/")[2] not in REGISTER_FILES:
         return False
     try:
-        return extends(read_raw(folder.parent, f"{folder.name}/{name}"), sha256)
+        return extends(content_of(f"{folder.name}/{name}", folder, inputs), sha256)
     except RawFileError:
         return False
