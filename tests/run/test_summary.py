@@ -86,7 +86,7 @@ def test_whatever_went_wrong_is_said_with_its_place() -> None:
         """\
 raw        raw: 1 campaigns, 13 files
 files      12 used, 1 refused, 0 rejected
-ignored loose/, old/ (no campaign.toml)
+ignored    loose/, old/ (no campaign.toml)
 values     9 of 2 materials, 3 refused
 refused    gel-a tensile_modulus (A1 and 1 more): 2 samples, 10 are needed
 refused    gel-a tensile_strength (soft-2026): 2 samples, 10 are needed
