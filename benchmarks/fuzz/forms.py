@@ -110,6 +110,59 @@ def plain_bars(c: Columns) -> bytes:
     return _rows(head, columns, "|").encode()
 
 
+def plain_counted(c: Columns) -> bytes:
+    """Write a curve as UTF-16 with counters, texts and missing values that nobody needs."""
+    head = [
+        f"Test\t{REMARK}\t\t\t\t",
+        "Set\tPoint\tTime\tLoad\tExtension\tStress",
+        "\t\ts\tN\tmm\tkPa",
+    ]
+    points = np.arange(1.0, c["time_s"].size + 1.0)
+    columns = [
+        (points, ".0f"), (c["time_s"], ".3f"), (c["force_N"], ".5f"),
+        (1e3 * c["displacement_m"], ".5f"),
+    ]  # fmt: skip
+    rows = _rows([], columns, "\t", "\tN/A\r\n", "run A\t")
+    return (_rows(head, [], "\t", "\r\n") + rows).encode("utf-16")
+
+
+def plain_quoted(c: Columns) -> bytes:
+    """Write a curve with every cell in quotes, in German, a separator at the end of each line."""
+    head = [f'"Bemerkung";"{REMARK}";;', '"Zeit";"Traversenweg";"Last";', '"(s)";"(mm)";"(N)";']
+    columns = [(c["time_s"], ".3f"), (1e3 * c["displacement_m"], ".5f"), (c["force_N"], ".5f")]
+    rows = _rows([], columns, '";"', '";\r\n', '"').replace(".", ",")
+    return (_rows(head, [], ";", "\r\n") + rows).encode()
+
+
+def plain_depth(c: Columns) -> bytes:
+    """Write an indent as a plain table."""
+    head = [f"Remark\t{REMARK}", "Time (s)\tLoad (uN)\tIndentation (nm)"]
+    columns = [(c["time_s"], ".4f"), (1e6 * c["force_N"], ".5f"), (1e9 * c["depth_m"], ".3f")]
+    return _rows(head, columns, "\t").encode()
+
+
+def plain_impedance(c: Columns) -> bytes:
+    """Write a sweep as modulus and phase of the impedance."""
+    head = [f"Remark;{REMARK};;", "No.;Frequenz [kHz];|Z| [Ohm];Phasenwinkel [Grad]"]
+    w = 2.0 * np.pi * c["frequency_Hz"]
+    ohm = 1.0 / (w * c["parallel_capacitance_F"] * (c["loss_tangent"] + 1j))
+    columns = [
+        (np.arange(1.0, w.size + 1.0), ".0f"), (1e-3 * c["frequency_Hz"], ".6g"),
+        (np.abs(ohm), ".7g"), (np.degrees(np.angle(ohm)), ".5f"),
+    ]  # fmt: skip
+    return _rows(head, columns, ";", "\r\n").encode()
+
+
+def plain_cure(c: Columns) -> bytes:
+    """Write a cure over times as a clock shows them."""
+    head = [f"Remark;{REMARK}", "Elapsed time;Viscosity", "hh:mm:ss;cP"]
+    rows = "".join(
+        f"{round(t) // 3600}:{round(t) // 60 % 60:02d}:{round(t) % 60:02d};{1e3 * eta:.0f}\n"
+        for t, eta in zip(c["time_s"].tolist(), c["viscosity_Pas"].tolist(), strict=True)
+    )
+    return (_rows(head, [], ";") + rows).encode()
+
+
 def e4980a(c: Columns) -> bytes:
     """Write a sweep as a log of a Keysight E4980A."""
     head = [

@@ -118,6 +118,7 @@ def _of_the_twin() -> Iterator[Good]:
 def _in_other_forms() -> Iterator[Good]:
     pressed, pulled = of_twin("compression", STIFF), of_twin("tension", STIFF)
     film, ramp = of_twin("permittivity", STIFF), of_twin("breakdown", "sylgard-182-10to1")
+    dent, cure = of_twin("nanoindentation", STIFF), of_twin("viscosity", SOFT)
     for reader, good, write in (
         ("phantom", pressed, lambda c, n: forms.phantom(c, n("diameter_mm"), n("height_mm"))),
         ("nexygen", pressed, lambda c, _: forms.nexygen(c)),
@@ -129,6 +130,11 @@ def _in_other_forms() -> Iterator[Good]:
         ),
         ("plain-german", pressed, lambda c, _: forms.plain_german(c)),
         ("plain-bars", pulled, lambda c, _: forms.plain_bars(c)),
+        ("plain-counted", pulled, lambda c, _: forms.plain_counted(c)),
+        ("plain-quoted", pressed, lambda c, _: forms.plain_quoted(c)),
+        ("plain-depth", dent, lambda c, _: forms.plain_depth(c)),
+        ("plain-impedance", film, lambda c, _: forms.plain_impedance(c)),
+        ("plain-cure", cure, lambda c, _: forms.plain_cure(c)),
         ("rigol", ramp, lambda c, _: forms.rigol(c)),
         ("tektronix", ramp, lambda c, _: forms.tektronix(c)),
         ("lvm", ramp, lambda c, _: forms.lvm(c)),

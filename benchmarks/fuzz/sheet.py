@@ -14,7 +14,7 @@ _QUOTED = r',(?=")'
 # What parts the cells of a row, by reader.
 _SEPARATOR = {
     "antonpaar": ";", "bluehill": _QUOTED, "flow_tab": "\t", "hysitron": "\t", "mark10": "\t",
-    "lvm": "\t", "mts": "\t", "ndj8s": r"[\t#]|\s+", "nexygen": "\t", "plain": r"[;|]",
+    "lvm": "\t", "mts": "\t", "ndj8s": r"[\t#]|\s+", "nexygen": "\t", "plain": r"[;|\t]",
     "rheocompass": "\t", "schmid": "\t", "soro": ";",
 }  # fmt: skip
 _DECIMAL_COMMA = ("antonpaar", "mts", "rheocompass")

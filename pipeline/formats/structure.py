@@ -16,7 +16,7 @@ from deamat.core.register_columns import split_unit
 from deamat.core.unit_spellings import unit_as_written
 from deamat.core.units import UnknownUnit
 from deamat.formats.cells import looks_numeric
-from deamat.formats.durations import CLOCK, is_clock, is_date
+from deamat.formats.durations import CLOCK, clock_unit, is_clock, is_date
 
 SEPARATORS = ("\t", ";", ",", "|")
 _HEADER_LINES = 1000  # no results block above a table is longer
@@ -154,7 +154,8 @@ def _unit_row(
 
 def _is_unit(text: str) -> bool:
     try:
-        return unit_as_written(text) is not None or text.casefold() == "s"
+        known = unit_as_written(text) is not None or text.casefold() == "s"
+        return known or bool(clock_unit(text))
     except UnknownUnit:
         return True  # of which there are several: refused later, with the choices
 
