@@ -155,9 +155,9 @@ def plain_impedance(c: Columns) -> bytes:
 
 def plain_cure(c: Columns) -> bytes:
     """Write a cure over times as a clock shows them."""
-    head = [f"Remark;{REMARK}", "Elapsed time;Viscosity", "hh:mm:ss;cP"]
+    head = [f"Remark;{REMARK}", "Elapsed time;Viscosity;Temp.", "hh:mm:ss;cP;C"]
     rows = "".join(
-        f"{round(t) // 3600}:{round(t) // 60 % 60:02d}:{round(t) % 60:02d};{1e3 * eta:.0f}\n"
+        f"{round(t) // 3600}:{round(t) // 60 % 60:02d}:{round(t) % 60:02d};{1e3 * eta:.0f};22.0\n"
         for t, eta in zip(c["time_s"].tolist(), c["viscosity_Pas"].tolist(), strict=True)
     )
     return (_rows(head, [], ";") + rows).encode()
