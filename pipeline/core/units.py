@@ -47,6 +47,7 @@ UNITS: dict[str, tuple[str, float, float]] = {
     "uN": ("N", 1e-6, 0.0),
     "kN": ("N", 1e3, 0.0),
     "cN": ("N", 1e-2, 0.0),
+    "daN": ("N", 10.0, 0.0),
     "nN": ("N", 1e-9, 0.0),
     "dyn": ("N", 1e-5, 0.0),
     "gf": ("N", 9.80665e-3, 0.0),  # what force gauges can be set to; exact by definition

@@ -52,4 +52,4 @@ def _read(file: RawFile) -> Recording:
     return read_table(file, layout, _READER, {})
 
 
-FORMAT = Format(_READER.name, "Anton Paar flow curve", _recognises, _read, ";")
+FORMAT = Format(_READER.name, "Anton Paar flow curve", _recognises, _read, ";", tabular=True)

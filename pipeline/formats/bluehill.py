@@ -63,4 +63,5 @@ FORMAT = Format(
     _read,
     _READER.dialect.delimiter,
     MECHANICS,
+    tabular=True,
 )

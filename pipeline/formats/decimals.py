@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from deamat.core.number_grammar import is_number
 
@@ -11,6 +11,8 @@ _GROUPS_BY_COMMA = re.compile(r"[+-]?[1-9][0-9]{0,2}(?:,[0-9]{3})+(?:\.[0-9]*)?"
 _GROUPS_BY_POINT = re.compile(r"[+-]?[1-9][0-9]{0,2}(?:\.[0-9]{3})+,[0-9]*")
 _GROUPS_BY_SPACE = re.compile(r"[+-]?[0-9]{1,3}(?:[\u00a0\u202f' ][0-9]{3})+(?:[.,][0-9]*)?")
 _SPACES = re.compile(r"[\u00a0\u202f' ]")
+# what no damage makes of a decimal point: a group and a fraction, two groups, a blank of print
+_PROVEN = re.compile(r"[+-]?[0-9]{1,3}(?:([,' ])[0-9]{3}(?:\1[0-9]{3}|[.,][0-9])|[\u00a0\u202f]).*")
 # what no comma between thousands can be: behind a leading zero, or before one or two digits
 _FRACTION = re.compile(rb"(?<![0-9])0[0-9]*,|,[0-9]{1,2}(?![0-9])|,[0-9]{4}")
 
@@ -19,10 +21,20 @@ class Ambiguous(ValueError):
     """Both decimal marks fit, and mean different numbers; holds the cell that shows it."""
 
 
-def normal(cell: str) -> str:
-    """Write a true minus sign as a hyphen, and leave out blanks between groups of thousands."""
-    plain = cell.replace("\u2212", "-")
-    return _SPACES.sub("", plain) if _GROUPS_BY_SPACE.fullmatch(plain) else plain
+def grouping(cells: Iterable[str]) -> bool:
+    """Say whether some cell proves that thousands are parted: `1,234.5`, `1 234 567`.
+
+    A lone `1 234` or `1,234` among fractions may be a damaged `1.234`.
+    """
+    return any(_PROVEN.fullmatch(cell) for cell in cells)
+
+
+def normal(cells: Sequence[str]) -> list[str]:
+    """Write true minus signs as hyphens, and leave out blanks that are proven to part thousands."""
+    plain = [cell.replace("\u2212", "-") for cell in cells]
+    if not grouping(plain):
+        return plain
+    return [_SPACES.sub("", c) if _GROUPS_BY_SPACE.fullmatch(c) else c for c in plain]
 
 
 def _has_comma(cell: str) -> bool:
@@ -69,10 +81,10 @@ def sole_decimal_mark(block: bytes, declared: str = "") -> str:
     return "," if b"." not in block and _FRACTION.search(block) else ""
 
 
-def number_text(cell: str, decimal: str) -> str:
+def number_text(cell: str, decimal: str, *, grouped: bool = True) -> str:
     """Return a cell as a number with a decimal point, or as it is where it is none."""
     if decimal == ",":
         if _GROUPS_BY_POINT.fullmatch(cell):
             cell = cell.replace(".", "")
         return cell.replace(",", ".", 1) if _has_comma(cell) else cell
-    return cell.replace(",", "") if _GROUPS_BY_COMMA.fullmatch(cell) else cell
+    return cell.replace(",", "") if grouped and _GROUPS_BY_COMMA.fullmatch(cell) else cell

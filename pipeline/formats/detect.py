@@ -5,16 +5,21 @@ To add a format, see `deamat.formats`: one file, one line.
 
 from __future__ import annotations
 
+import contextlib
 import difflib
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
 
 from deamat.core.errors import ConfigError, RawFileError
+from deamat.core.recording import Recording
 from deamat.formats import FORMATS, plain, workbook
 from deamat.formats.declared import format_of, is_declared
 from deamat.formats.exports import EXPORTS_FILE, Export
 from deamat.formats.format import Format
 from deamat.formats.rawfile import Head, RawFile
+from deamat.formats.vocabulary import needs
 
 _HINT = (
     "export a table with a row of labels and the unit of each column, such as `Load (N)`, or name "
@@ -70,10 +75,13 @@ def detect(file: RawFile, exports: Sequence[Export] = ()) -> Format:
         )  # fmt: skip
     matching = file.once(_recognising)
     if len(matching) == 1:
-        return matching[0] if _is_for(matching[0], file) else _plain_or(matching[0], file)
+        return _form_or_plain(matching[0], file)
     if not file.body.strip():
         raise RawFileError(file.path, "the file is empty", hint="export the file again")
     if matching:
+        with contextlib.suppress(RawFileError):
+            if file.technique:
+                return plain.form_of(file)
         names = ", ".join(form.name for form in matching)
         raise RawFileError(
             file.path,
@@ -99,16 +107,31 @@ def _line(file: RawFile, number: int) -> str:
     return file.body[file.offset(number - 1) :].split(b"\n", 1)[0].decode("utf-8", "replace")
 
 
-def _is_for(form: Format, file: RawFile) -> bool:
-    return not (form.techniques and file.technique) or file.technique in form.techniques
+def _form_or_plain(form: Format, file: RawFile) -> Format:
+    """Let a file that a form of tables refuses be read as any plain table, where it is one.
 
-
-def _plain_or(form: Format, file: RawFile) -> Format:
-    """A testing machine's table in another technique's register means that technique's words."""
-    try:
-        return plain.form_of(file)
-    except RawFileError:
+    Such a form insists on every column; a technique needs but some of them. A testing machine's
+    table in another technique's register means that technique's words.
+    """
+    if not file.technique:
         return form
+    if form.techniques and file.technique not in form.techniques:
+        with contextlib.suppress(RawFileError):
+            return plain.form_of(file)
+        return form
+    return replace(form, read=partial(_read_or_plain, form)) if form.tabular else form
+
+
+def _read_or_plain(form: Format, file: RawFile) -> Recording:
+    try:
+        recording = form.read(file)
+    except RawFileError as error:
+        with contextlib.suppress(RawFileError):
+            return plain.FORMAT.read(file)
+        raise error from None
+    if any(recording.columns.keys() >= {*need} for need in needs(file.technique)):
+        return recording
+    return plain.FORMAT.read(file)
 
 
 def _recognising(head: Head) -> tuple[Format, ...]:

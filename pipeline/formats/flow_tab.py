@@ -72,4 +72,4 @@ def _read(file: RawFile) -> Recording:
     return replace(recording, flags=(*recording.flags, flag))
 
 
-FORMAT = Format(_READER.name, "tab-separated flow curve", _recognises, _read, "\t")
+FORMAT = Format(_READER.name, "tab-separated flow curve", _recognises, _read, "\t", tabular=True)

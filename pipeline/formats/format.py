@@ -24,6 +24,7 @@ class Format:
     read : the whole file to a Recording, or `RawFileError`
     delimiter : of its tables: where the head holds none, nobody needs to ask `recognises`
     techniques : for which it is written, empty for any; elsewhere its files are plain tables
+    tabular : its files are tables with labels and units: one that it refuses may be a plain table
     """
 
     name: str
@@ -32,3 +33,4 @@ class Format:
     read: Callable[[RawFile], Recording]
     delimiter: str = ""
     techniques: tuple[str, ...] = ()
+    tabular: bool = False

@@ -66,4 +66,5 @@ FORMAT = Format(
     _read,
     _READER.dialect.delimiter,
     MECHANICS,
+    tabular=True,
 )

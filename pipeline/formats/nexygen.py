@@ -56,4 +56,5 @@ FORMAT = Format(
     _recognises,
     _read,
     _READER.dialect.delimiter,
+    tabular=True,
 )

@@ -64,4 +64,5 @@ FORMAT = Format(
     _read,
     _READER.dialect.delimiter,
     MECHANICS,
+    tabular=True,
 )

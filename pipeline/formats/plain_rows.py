@@ -15,7 +15,14 @@ from deamat.core.recording import Recording, Source
 from deamat.core.records import Flag
 from deamat.formats.cells import OVER_RANGE, Dialect, looks_numeric, text_row, why_not
 from deamat.formats.choice import Choice, Taken
-from deamat.formats.decimals import Ambiguous, decimal_mark, normal, number_text, sole_decimal_mark
+from deamat.formats.decimals import (
+    Ambiguous,
+    decimal_mark,
+    grouping,
+    normal,
+    number_text,
+    sole_decimal_mark,
+)
 from deamat.formats.durations import clock_unit, is_clock, is_date, seconds_text
 from deamat.formats.header import notes
 from deamat.formats.numbers import parse
@@ -150,7 +157,7 @@ def _values(
     if quick is not None:
         return quick
     split, numbers, faults = _split(file, rows, choice, lines[: choice.heading.first])
-    cells = {t.name: [normal(row[t.column]) for row in split] for t in choice.used}
+    cells = {t.name: normal([row[t.column] for row in split]) for t in choice.used}
     try:
         decimal = choice.decimal or decimal_mark(
             cell for t in choice.needed for cell in cells[t.name]
@@ -206,7 +213,7 @@ def _quick(
         elif taken in choice.needed:
             return None
         else:
-            cells = [normal(cell.strip()) for cell in columns[taken.column]]
+            cells = normal([cell.strip() for cell in columns[taken.column]])
             slow, wrong = _column(cells, decimal, taken.unit)
             if wrong:
                 at, _, reason, _ = wrong[0]
@@ -267,9 +274,9 @@ def _column(
     """Read the cells of one column, and say which ones are no numbers and why."""
     values = np.zeros(len(cells))
     wrong: list[tuple[int, str, str, str]] = []
-    clock = clock_unit(unit)
+    clock, grouped = clock_unit(unit), grouping(cells)
     for at, cell in enumerate(cells):
-        text = seconds_text(cell, clock) if clock else number_text(cell, decimal)
+        text = seconds_text(cell, clock) if clock else number_text(cell, decimal, grouped=grouped)
         if not is_number(text) or not abs(float(text)) < OVER_RANGE:
             wrong.append((at, cell, *_why(cell, decimal)))
             continue

@@ -110,4 +110,4 @@ def _notes(lines: list[str]) -> dict[str, str]:
     return kept
 
 
-FORMAT = Format(_NAME, "flow curves side by side, % header", _recognises, _read, "\t")
+FORMAT = Format(_NAME, "flow curves side by side, % header", _recognises, _read, "\t", tabular=True)

@@ -61,4 +61,5 @@ FORMAT = Format(
     _read,
     _READER.dialect.delimiter,
     MECHANICS,
+    tabular=True,
 )

@@ -24,7 +24,8 @@ _ROWS = 32  # of numbers in a row are the table, and no further heading is looke
 _TEXT = re.compile(r"[^0-9+\-.,;\t|\" eE]")  # what no row of plain numbers holds
 _BRACKETED = re.compile(r"\((.*)\)|\[(.*)\]|<(.*)>")
 _ENDING = re.compile(r"(.*\S)\s*(?:\(([^()]*)\)|\[([^\[\]]*)\]|<([^<>]*)>)")
-_SLASH = re.compile(r"(.*\S)\s+(?:/|in|,)\s*(\S+(?: s)?)")
+_SLASH = re.compile(r"(.*\S)(?:\s+(?:/|in\b|,)\s*|,\s+)(\S+(?: s)?)")
+_TIGHT = re.compile(r"(.*[^\s0-9])/(\S+(?: s)?)")
 _GROUPED = re.compile(r"[+\-\u2212]?[0-9][0-9.,'\u00a0\u202f ]*")
 _WITHOUT = frozenset(("", "#", "-", "[]", "()", "n/a", "none"))
 
@@ -92,7 +93,7 @@ def headings(lines: Sequence[str]) -> Iterator[Heading]:
 
 def _holds_numbers(line: str, separator: str) -> bool:
     """Say whether two fields of a line at least begin as numbers do."""
-    return len([field for field in line.split(separator) if field.strip(' "')[:1].isdigit()]) >= 2
+    return len([field for field in line.split(separator) if field.strip(' "+-')[:1].isdigit()]) >= 2
 
 
 def _headings_at(
@@ -208,4 +209,7 @@ def split_label(label: str) -> tuple[str, str]:
     if unit_ is not None:
         return stem, unit_
     stem, _, ending = label.rpartition("_")
-    return (stem, ending) if stem and ending and _is_unit(ending) else (label, "")
+    if stem and ending and _is_unit(ending):
+        return stem, ending
+    found = _TIGHT.fullmatch(label)
+    return (found[1], found[2]) if found is not None and _is_unit(found[2]) else (label, "")

@@ -62,8 +62,18 @@ ASKED: Mapping[str, Asked] = {
     "breakdown": Asked((("time_s", "voltage_V"),), ("current_A",)),
     "nanoindentation": Asked((("depth_m", "force_N"),), ("time_s",)),
 }
+
+
+def needs(technique: str) -> tuple[tuple[str, ...], ...]:
+    """Return the sets of quantities each of which is enough for a technique."""
+    return ASKED[technique].needs if technique in ASKED else ((),)
+
+
 _REMARK = re.compile(r"\s*\([^()]*\)$")
-_NOISE = frozenset(("measurement", "primary", "measured", "actual", "data"))
+_NOISE = frozenset((
+    "measurement", "primary", "measured", "actual", "data", "messung", "prim\u00e4re", "absolut",
+    "absolute", "standard", "mesure", "medida", "misura",
+))  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +98,7 @@ def vocabulary() -> Mapping[str, Words]:
 def plain_label(label: str) -> str:
     """Bring a label to the form in which the vocabulary lists it."""
     text = unicodedata.normalize("NFKC", label).casefold().replace("_", " ")
-    return " ".join(text.split()).strip(" .:")
+    return " ".join(text.split()).strip(" .:#").removeprefix("%").lstrip()
 
 
 @lru_cache(maxsize=512)
@@ -107,6 +117,9 @@ def _forms(plain: str) -> Iterable[str]:
     """A label, then with less and less of what instruments add to it."""
     yield plain
     yield plain.lstrip("-\u2212 ")
+    if plain.endswith("(y)"):  # of an admittance, not of an impedance
+        return
     bare = _REMARK.sub("", plain)
     yield bare
+    yield plain.partition("(")[0].rstrip()
     yield " ".join(word for word in bare.split() if word not in _NOISE)
