@@ -7,6 +7,7 @@ keep the exact spelling: `run_a` is a note, not a current.
 from __future__ import annotations
 
 import re
+import unicodedata
 
 from deamat.core.units import UNITS, UnknownUnit, si_factor
 from deamat.core.units import known as known_exactly
@@ -42,7 +43,8 @@ _WORDS = {
     "Pa": ("pascal", "pascals", "\u043f\u0430"),
     "kPa": ("\u043a\u043f\u0430", "kilopascal", "kilopascals", "\u5343\u5e15"),
     "MPa": ("\u043c\u043f\u0430", "megapascal", "megapascals", "\u5146\u5e15"),
-    "Pa.s": ("pa*s", "pa-s", "pas"),
+    "Pa.s": ("pa*s", "pa-s", "pas", "n s/m2", "n\u00b7s/m2", "n.s/m2", "ns/m2", "n*s/m2"),
+    "kPa.s": ("kpa s", "kpa\u00b7s", "kpa*s", "kpas"),
     "mPa.s": ("mpa*s", "mpa-s"),
     "cP": ("centipoise", "cpoise"),
     "P": ("poise",),
@@ -72,6 +74,10 @@ _AMBIGUOUS = {
 }
 
 
+_LETTERS = {0xB2: "2", 0xB3: "3", 0xB5: "u", 0x3BC: "u", 0x3C9: "ohm"}
+_POINTS = dict.fromkeys((0x22C5, 0x2219, 0x2022, 0x30FB, 0xFF65), "\u00b7")  # between two units
+
+
 def _folded() -> dict[str, tuple[str, ...]]:
     """Units that differ from a text in the case of their letters alone."""
     found: dict[str, list[str]] = {}
@@ -98,7 +104,7 @@ def unit_as_written(text: str, si_unit: str = "") -> str | None:
     ------
     UnknownUnit : it may be one of several; names the choices
     """
-    plain = re.sub(r"\s*([./*])\s*", r"\1", " ".join(text.split()))
+    plain = re.sub(r"\s*([./*])\s*", r"\1", " ".join(text.translate(_POINTS).split()))
     if not plain:
         return None
     if known_exactly(plain):
@@ -106,7 +112,9 @@ def unit_as_written(text: str, si_unit: str = "") -> str | None:
     folded = plain.casefold().rstrip(".")
     if folded in _AMBIGUOUS:
         _refuse(text, _AMBIGUOUS[folded])
-    spelled = folded.translate({0xB2: "2", 0xB3: "3", 0xB5: "u", 0x3BC: "u", 0x3C9: "ohm"})
+    if folded in _ALIASES:
+        return _ALIASES[folded]
+    spelled = unicodedata.normalize("NFKC", folded).casefold().translate(_LETTERS)
     if spelled in _ALIASES:
         return _ALIASES[spelled]
     if plain.endswith(".") and known_exactly(plain[:-1]):

@@ -67,6 +67,8 @@ UNITS: dict[str, tuple[str, float, float]] = {
     "dyn/cm2": ("Pa", 0.1, 0.0),
     "bar": ("Pa", 1e5, 0.0),
     "psi": ("Pa", 4.4482216152605 / 0.0254**2, 0.0),
+    "ksi": ("Pa", 6894757.293168361, 0.0),
+    "mbar": ("Pa", 100.0, 0.0),
     "J": ("J", 1.0, 0.0),
     "mJ": ("J", 1e-3, 0.0),
     "kg": ("kg", 1.0, 0.0),
@@ -130,6 +132,7 @@ UNITS: dict[str, tuple[str, float, float]] = {
     "Pa.s^n": ("Pa.s^n", 1.0, 0.0),  # of a power-law fluid's consistency, whatever its n
     "Pas": ("Pa.s", 1.0, 0.0),
     "mPa.s": ("Pa.s", 1e-3, 0.0),
+    "kPa.s": ("Pa.s", 1e3, 0.0),
     "mPas": ("Pa.s", 1e-3, 0.0),
     "mPa s": ("Pa.s", 1e-3, 0.0),
     "P": ("Pa.s", 0.1, 0.0),  # poise

@@ -108,6 +108,8 @@ def _column(label: str, written: str, asked: Asked) -> _Column:
     if not means and written and (function := meaning_among(whole, asked.quantities)):
         return _Column(whole, "", "", "", "", dict(function))  # `Tan(Delta)` has no unit
     wanted = {vocabulary()[name].unit for name in means}
+    if wanted == {"K"} and written == "F":
+        written = "degF"  # a temperature is not in farads
     if clock := clock_unit(written):
         return _Column(label, written, clock, "s", "", means)
     try:
@@ -221,7 +223,9 @@ def _missing(columns: Sequence[_Column], name: str) -> str:
                 return column.fault
             if not column.written:
                 return f"no unit stands beside {column.label!r} ({words})"
-            return f"{column.label!r} is in {column.written}, which is no unit of {words}"
+            said = f"{column.label!r} is in {column.written}, which is no unit of {words}"
+            mass = si == "N" and column.unit in ("g", "kg")
+            return f"{said}; write {column.unit}f if a force is meant" if mass else said
     doubtful = [f"{c.label} [{c.written}]" for c in columns if c.si == si and not c.means]
     if len(doubtful) > 1 and si != "1":
         return (

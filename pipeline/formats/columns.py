@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 
@@ -14,6 +14,7 @@ from deamat.formats.cells import Dialect
 from deamat.formats.documentation import contradictions
 from deamat.formats.header import Layout
 from deamat.formats.quantities import STANDARD, assign, meaning
+from deamat.formats.vocabulary import ASKED, meaning_among
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +45,8 @@ class Columns:
     written : label to unit as it stands in the file, empty where it does not
     documented : `label [unit]` of those whose unit does not stand in the file
     flags : units that contradict each other or are not of what the label means
+    kept : which columns of the file these are
+    left : labels of the others: they have no unit, and nobody asks for what they mean
     """
 
     names: tuple[str, ...]
@@ -51,6 +54,8 @@ class Columns:
     written: Mapping[str, str]
     documented: tuple[str, ...]
     flags: tuple[Flag, ...]
+    kept: tuple[int, ...]
+    left: tuple[str, ...]
 
 
 def columns_of(layout: Layout, reader: Reader, header_units: Mapping[str, str]) -> Columns:
@@ -70,28 +75,45 @@ def columns_of(layout: Layout, reader: Reader, header_units: Mapping[str, str]) 
 
 @lru_cache(maxsize=256)  # the files of a campaign have the same labels
 def _columns(layout: Layout, reader: Reader, header_units: tuple[tuple[str, str], ...]) -> Columns:
-    _refuse_twins(layout, tuple(label.casefold() for label in layout.labels))
+    everything = range(len(layout.labels))
+    _refuse_twins(layout, tuple(label.casefold() for label in layout.labels), everything)
     stated = {label.casefold(): unit for label, unit in header_units}
-    over = dict(zip(layout.labels, layout.units, strict=True))
+    left = tuple(
+        column
+        for column, (label, unit) in enumerate(zip(layout.labels, layout.units, strict=True))
+        if not (unit or stated.get(label.casefold()) or label.casefold() in reader.unwritten)
+        and _is_note(label)
+    )
+    kept = tuple(column for column in range(len(layout.labels)) if column not in left)
+    over = {layout.labels[column]: layout.units[column] for column in kept}
     written = {label: unit or stated.get(label.casefold(), "") for label, unit in over.items()}
-    units = [_unit(layout, reader, column, unit) for column, unit in enumerate(written.values())]
-    found = [_conversion(layout, column, unit) for column, unit in enumerate(units)]
+    units = {c: _unit(layout, reader, c, written[layout.labels[c]]) for c in kept}
+    found = [_conversion(layout, column, unit) for column, unit in units.items()]
+    labels = tuple(over)
     si_units = tuple(si_unit for si_unit, _, _ in found)
-    names = assign(layout.labels, si_units)
-    _refuse_twins(layout, names)
+    names = assign(labels, si_units)
+    _refuse_twins(layout, names, kept)
     documented = tuple(
         f"{label} [{unit}]"
-        for (label, said), unit in zip(written.items(), units, strict=True)
+        for (label, said), unit in zip(written.items(), units.values(), strict=True)
         if not said
     )
     conversions = tuple((factor, offset) for _, factor, offset in found)
-    flags = contradictions(stated, over, "header") + _kind_flags(layout, si_units)
-    return Columns(names, conversions, written, documented, flags)
+    flags = contradictions(stated, over, "header") + _kind_flags(labels, si_units)
+    notes = tuple(layout.labels[column] for column in left)
+    return Columns(names, conversions, written, documented, flags, kept, notes)
 
 
-def _refuse_twins(layout: Layout, names: tuple[str, ...]) -> None:
+def _is_note(label: str) -> bool:
+    """Say whether a column without a unit is a counter or a remark: no word for a quantity."""
+    return meaning(label) is None and not any(
+        meaning_among(label, asked.quantities) for asked in ASKED.values()
+    )
+
+
+def _refuse_twins(layout: Layout, names: tuple[str, ...], columns: Sequence[int]) -> None:
     if len(set(names)) < len(names):
-        twin = next(column for column, name in enumerate(names) if name in names[:column])
+        twin = columns[next(at for at, name in enumerate(names) if name in names[:at])]
         raise RawFileError(
             "",
             "duplicate column: two columns have the same label",
@@ -132,10 +154,10 @@ def _conversion(layout: Layout, column: int, unit: str) -> tuple[str, float, flo
         ) from error
 
 
-def _kind_flags(layout: Layout, si_units: tuple[str, ...]) -> tuple[Flag, ...]:
+def _kind_flags(labels: Sequence[str], si_units: tuple[str, ...]) -> tuple[Flag, ...]:
     """Notice a column whose unit is not one of what its label means."""
     flags = []
-    for label, si_unit in zip(layout.labels, si_units, strict=True):
+    for label, si_unit in zip(labels, si_units, strict=True):
         found = meaning(label)
         if found is not None and STANDARD[found[1]][0] != si_unit:
             flags.append(

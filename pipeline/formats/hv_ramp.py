@@ -156,9 +156,8 @@ def _named(
 ) -> dict[str, FloatArray]:
     """Multiply the monitors out, and insist on one time, one voltage and at most one current."""
     columns: dict[str, FloatArray] = {}
-    for column, (label, (name, values)) in enumerate(
-        zip(layout.labels, table.columns.items(), strict=True), start=1
-    ):
+    for label, (name, values) in zip(table.column_units, table.columns.items(), strict=True):
+        column = layout.labels.index(label) + 1
         wanted = {"time": "time_s", **{q: f"{q}_{unit}" for q, unit in _SI.items()}}
         if label in monitors:
             if name != f"{label}_V":

@@ -190,4 +190,4 @@ def _remarks(lines: Sequence[str]) -> dict[str, str]:
     return kept
 
 
-FORMAT = Format(_NAME, "LCR sweep as a plain table", _recognises, _read)
+FORMAT = Format(_NAME, "LCR sweep as a plain table", _recognises, _read, tabular=True)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import simdjson
@@ -76,6 +77,37 @@ def rows_from(file: RawFile, first: int) -> bytes | None:
     if not ended or b"\r" in ending.replace(b"\r\n", b"\n"):
         return None
     return file.body[start : end - len(ending)]
+
+
+def read_some(
+    file: RawFile, first: int, kept: Sequence[int], columns: int, dialect: Dialect
+) -> FloatArray:
+    """Read some of the columns of a block whose others may hold anything.
+
+    Parameters
+    ----------
+    kept : columns that are read, counted from 0
+    columns : fields of every row
+
+    Raises
+    ------
+    RawFileError : as `read_block`, by line and column of the file, or a row of another length
+    """
+    start = file.offset(first)
+    mark = dialect.delimiter.encode()
+    lines = []
+    for line in file.body[start:].split(b"\n"):
+        fields = line.rstrip(b"\r").split(mark)
+        whole = len(fields) == columns
+        lines.append(mark.join(fields[column] for column in kept) if whole else line)
+    part = replace(file, data=file.body[:start] + b"\n".join(lines), declared="utf-8")
+    try:
+        return read_block(part, first, len(kept), dialect)
+    except RawFileError as error:
+        column = error.column and kept[min(error.column, len(kept)) - 1] + 1
+        raise RawFileError(
+            file.path, error.reason, error.line, column, error.value, error.hint
+        ) from error
 
 
 def row_lines(file: RawFile, first: int, rows: int, dialect: Dialect) -> Sequence[int]:

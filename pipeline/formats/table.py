@@ -14,7 +14,7 @@ from deamat.core.records import Flag
 from deamat.formats.cells import looks_numeric
 from deamat.formats.columns import Columns, Reader, columns_of
 from deamat.formats.header import Layout, notes
-from deamat.formats.numbers import read_block, row_lines
+from deamat.formats.numbers import read_block, read_some, row_lines
 from deamat.formats.rawfile import Head, RawFile
 
 
@@ -111,12 +111,19 @@ def _heading(
     columns = columns_of(layout, reader, header_units)
     if columns.documented:
         metadata = {**metadata, "units not written in the file": ", ".join(columns.documented)}
+    if columns.left:
+        metadata = {**metadata, "columns not used": ", ".join(filter(None, columns.left))}
     return _Heading(_first_row(head, layout), columns, metadata)
 
 
 def _read_rows(file: RawFile, heading: _Heading, reader: Reader) -> Recording:
     told = heading.columns
-    rows = read_block(file, heading.rows, len(told.names), reader.dialect)
+    if told.left:
+        rows = read_some(
+            file, heading.rows, told.kept, len(told.kept) + len(told.left), reader.dialect
+        )
+    else:
+        rows = read_block(file, heading.rows, len(told.names), reader.dialect)
     lines = row_lines(file, heading.rows, len(rows), reader.dialect)
     columns = _to_si(rows, told.conversions)
     source = Source(

@@ -34,6 +34,7 @@ Every remark under its line number.
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Sequence
 
 import numpy as np
@@ -115,13 +116,15 @@ def _read(file: RawFile) -> Recording:
     else:
         clock, times = "time_s", _elapsed(file, readings, labels)
     units = {"viscosity": _VISCOSITY[next(label for label in labels if label in _VISCOSITY)]}
+    rest = ", ".join(label for label in labels if label and label not in _KNOWN)
+    remarks |= {"columns not used": rest} if rest else {}
     return recording(file, readings, clock, times, _NAME, remarks, units)
 
 
 def _check(file: RawFile, line: int, labels: Sequence[str]) -> None:
-    """Refuse labels outside the list, and two that mean the same."""
+    """Refuse labels that are nearly known ones, and two that mean the same."""
     for column, label in enumerate(labels, start=1):
-        if label not in _KNOWN:
+        if label not in _KNOWN and _nearly_known(label):
             raise RawFileError(
                 file.path, "an unknown label", line, column, label,
                 f"known labels: {', '.join(sorted(_KNOWN))}",
@@ -134,6 +137,15 @@ def _check(file: RawFile, line: int, labels: Sequence[str]) -> None:
                 len(labels) - labels[::-1].index(same[-1]), same[-1],
                 "export each quantity once",
             )  # fmt: skip
+
+
+def _nearly_known(label: str) -> bool:
+    """Say whether a label may be one of the list, written otherwise; the others are notes."""
+    plain = label.casefold()
+    stems = {known.partition("_")[0] for known in _KNOWN} | {"spindle", "rpm", "temp"}
+    return plain.startswith(tuple(stems)) or bool(
+        difflib.get_close_matches(plain, [known.casefold() for known in _KNOWN], 1, 0.75)
+    )
 
 
 def _reading(file: RawFile, at: int, line: str, labels: Sequence[str]) -> Reading:
@@ -162,7 +174,7 @@ def _reading(file: RawFile, at: int, line: str, labels: Sequence[str]) -> Readin
         elif label == "temperature_C":
             if (kelvin := temperature_K(file, at, column, cell)) is not None:
                 numbers["temperature_K"] = kelvin
-        elif not NO_PROBE.fullmatch(cell):
+        elif label in _OTHERS and not NO_PROBE.fullmatch(cell):
             name, unit = _OTHERS[label]
             numbers[name] = to_si(number(file, at, column, cell, label), unit)
     return Reading(at, clock, numbers, missing)
