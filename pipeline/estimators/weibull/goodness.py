@@ -151,7 +151,7 @@ def low_outlier(x: ArrayLike, censored: ArrayLike | None = None, level: float = 
     index = int(np.argmin(np.where(failed, values, np.inf)))
     hazard = float((values[index] / best.scale) ** best.shape)
     null = reference(withdrawals(values, failed))
-    as_low = int(np.searchsorted(null.lowest, hazard, side="right"))
+    as_low = int(np.searchsorted(null.lowest, hazard))
     p_value = (1 + as_low) / (1 + null.draws)
     return LowOutlier(
         index,

@@ -100,3 +100,5 @@ def test_loadings_are_counted() -> None:
     assert count_loadings(strain, strain.size - 1) == 4
     assert count_loadings(strain, 100) == 1
     assert count_loadings(pull(0.3) + np.tile([0.0, -0.004], 51)[:101], 100) == 1
+    assert count_loadings(np.array([0.0, 10.0, 9.0, 20.0]), 3) == 1  # back by 5 % and no more
+    assert count_loadings(np.array([0.0, 10.0, 8.9, 20.0]), 3) == 2

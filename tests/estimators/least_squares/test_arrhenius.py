@@ -54,5 +54,7 @@ def test_what_is_no_activation_energy_is_refused() -> None:
         fit_arrhenius(KELVIN[[0, 1, 1]], [3.0, 2.0, 2.1], np.zeros(3))
     with pytest.raises(FitRefused, match=r"^the activation energy, -26 -\+ "):
         fit_arrhenius(KELVIN, 1.0 / viscosity(KELVIN), np.full(4, 0.01))
+    with pytest.raises(FitRefused, match="cannot be told from zero"):
+        fit_arrhenius(KELVIN, np.ones(4), np.zeros(4))
     with pytest.raises(FitRefused, match="must be positive"):
         fit_arrhenius(KELVIN, [3.0, 2.0, 1.0, -1.0], np.zeros(4))
