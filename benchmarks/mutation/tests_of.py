@@ -124,7 +124,9 @@ def _note(waiting: SimpleQueue[tuple[str, Path]], copy: Copy) -> None:
                 cwd=copy.root, env=copy.environment | {"MUTATION_HITS": str(log)}, check=False,
                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
             )  # fmt: skip
-            outcome = json.loads(report.read_text(encoding="utf-8"))
+            outcome = {"seconds": {}, "failed": [name]}  # of tests that took the process with them
+            if report.is_file():
+                outcome = json.loads(report.read_text(encoding="utf-8"))
             blocks: Mapping[str, set[str]] = defaultdict(set)
             for line in log.read_text(encoding="utf-8").splitlines() if log.is_file() else []:
                 test, _, block = line.partition("\t")
