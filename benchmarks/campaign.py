@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -38,8 +39,10 @@ class Curve:
     modulus_Pa: float
 
 
-def write_campaign(folder: Path, files: int, rows: int) -> list[Curve]:
-    """Write a campaign of linear compression curves, in every form in turn.
+def write_campaign(
+    folder: Path, files: int, rows: int, forms: Sequence[Form] = FORMS
+) -> list[Curve]:
+    """Write a campaign of linear compression curves, in each of some forms in turn.
 
     Parameters
     ----------
@@ -51,7 +54,7 @@ def write_campaign(folder: Path, files: int, rows: int) -> list[Curve]:
     strain = SPEED_m_per_s * time_s / HEIGHT_m
     curves = []
     for i in range(files):
-        form = FORMS[i % len(FORMS)]
+        form = forms[i % len(forms)]
         material = f"silicone-{i % _MATERIALS:02d}"
         modulus_Pa = 5e4 * (1 + i % _MATERIALS)
         load_N = modulus_Pa * AREA_m2 * strain + generator.normal(0.0, _FORCE_NOISE_N, rows)
