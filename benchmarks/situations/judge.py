@@ -15,7 +15,7 @@ from deamat.core.records import PropertyRecord
 from deamat.techniques import TECHNIQUES
 from deamat.twin.situations import SITUATIONS
 from deamat.twin.situations.situation import MATERIAL, Made, Situation
-from deamat.twin.situations.written import make_situation, situation_files
+from deamat.twin.situations.written import campaign_of, make_situation
 
 ROOT = Path(__file__).resolve().parents[2]
 _BUDGET_s = 20.0
@@ -56,7 +56,7 @@ def cell(task: tuple[str, float, int, int]) -> list[Judged]:
 def judge(situation: Situation, severity: float, seed: int, runner: Runner) -> Judged:
     """Make one material in a situation, run it and hold the answer against the truth."""
     made = make_situation(situation, severity, seed)
-    files = situation_files(situation, severity, seed)
+    files = campaign_of(situation, severity, seed, made)
     outcome = runner.whole({f"{CAMPAIGN}/{p}": d for p, d in files.items()}, _BUDGET_s)
     off = made.naive / made.truth - 1.0
     flags = frozenset(f.name for r in outcome.records for f in r.flags if f.severity != "info")

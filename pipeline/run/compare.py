@@ -31,6 +31,8 @@ def compare(measured: Sequence[Measured], run: RunContext) -> list[Measured]:
     ----------
     measured : of one technique
     """
+    if not measured:
+        return []
     specimens = [s for survey in run.surveys for s in survey.specimens]
     materials = materials_by_id(specimens)
     names = near_names((s.material for s in specimens), run.config.materials)

@@ -47,7 +47,7 @@ def make_situation(situation: Situation, severity: float, seed: int) -> Made:
 
 def situation_files(situation: Situation, severity: float, seed: int) -> dict[str, bytes]:
     """Make all files of a situation's campaign in memory: path relative to it to content."""
-    return _campaign(situation, severity, seed, make_situation(situation, severity, seed))
+    return campaign_of(situation, severity, seed, make_situation(situation, severity, seed))
 
 
 def write_situation(
@@ -86,14 +86,15 @@ def write_situation(
         )
     made = make_situation(situation, severity, seed)
     with new_folder(target) as folder:
-        for path, data in _campaign(situation, severity, seed, made).items():
+        for path, data in campaign_of(situation, severity, seed, made).items():
             (folder / path).parent.mkdir(parents=True, exist_ok=True)
             (folder / path).write_bytes(data)
     write_atomically(truth_out, _truth(situation, severity, seed, made))
     return target
 
 
-def _campaign(situation: Situation, severity: float, seed: int, made: Made) -> dict[str, bytes]:
+def campaign_of(situation: Situation, severity: float, seed: int, made: Made) -> dict[str, bytes]:
+    """Put a material that was made into a campaign: path relative to it to content."""
     declared = _CAMPAIGN.format(
         told=situation.told, name=situation.name, severity=severity, seed=seed
     )
