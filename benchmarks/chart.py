@@ -1,10 +1,10 @@
 """Accuracy against speed of every estimator and its rivals, on the same simulated data in one run.
 
-`python -m benchmarks.chart` measures five families (slope, polynomial, power law, Weibull points
-and intervals) and the ladder of actuator models, prints a table for each, and writes tables as CSV
-and JSON and charts as SVG and PNG to `processed/benchmarks/`; `--docs` also writes
-`docs/benchmarks.md` and the pictures in `docs/methods/img/`. All data are simulated; nothing of it
-is a measurement.
+`python -m benchmarks.chart` measures seven families (slope, slack, means with limits, polynomial,
+power law, Weibull points and intervals) and the ladder of actuator models, prints a table for each,
+and writes tables as CSV and JSON and charts as SVG and PNG to `processed/benchmarks/`; `--docs`
+also writes `docs/benchmarks.md` and the pictures in `docs/methods/img/`. All data are simulated;
+nothing of it is a measurement.
 """
 
 from __future__ import annotations
@@ -16,13 +16,21 @@ from pathlib import Path
 
 from benchmarks import ladder
 from benchmarks.docs_page import copy_picture, write_page
-from benchmarks.families import polynomial, power_law, slope, weibull
+from benchmarks.families import censored_mean, polynomial, power_law, slack, slope, weibull
 from benchmarks.families.family import Family, with_front
 from benchmarks.front_figure import draw_front
 from benchmarks.measure import is_there
 from benchmarks.timing import RESULTS, Row, stay_on_one_core, table, write_results
 
-FAMILIES = (slope.FAMILY, polynomial.FAMILY, power_law.FAMILY, weibull.POINTS, weibull.INTERVALS)
+FAMILIES = (
+    slope.FAMILY,
+    slack.FAMILY,
+    censored_mean.FAMILY,
+    polynomial.FAMILY,
+    power_law.FAMILY,
+    weibull.POINTS,
+    weibull.INTERVALS,
+)
 
 
 def measure(family: Family, scale: float) -> list[Row]:

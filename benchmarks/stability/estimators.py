@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
-from benchmarks.stability import mean, polynomial, regression, slope, weibull
+from benchmarks.stability import (
+    censored_mean,
+    mean,
+    polynomial,
+    regression,
+    slack,
+    slope,
+    weibull,
+)
 
 ESTIMATORS = (
     weibull.ESTIMATOR,
@@ -12,6 +20,8 @@ ESTIMATORS = (
     regression.POWER_LAW,
     polynomial.GIVEN,
     slope.ESTIMATOR,
+    slack.ESTIMATOR,
     regression.LINEAR,
     mean.ESTIMATOR,
+    censored_mean.ESTIMATOR,
 )

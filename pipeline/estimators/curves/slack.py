@@ -17,6 +17,7 @@ _LOOSE = 0.8  # of the slope behind the hinge: a start that is less steep is loo
 _BEYOND = 3  # windows behind the hinge that show the slope of the taut strip
 _CERTAIN = 1e-4  # false alarms among sound curves
 _GRID = 60
+_LEFT = 0.3  # of a step of the grid: what one step to the minimum leaves
 _FEWEST = 8
 
 
@@ -81,18 +82,43 @@ def find_slack(strain: FloatArray, stress: FloatArray, window: float) -> Slack |
         return None
     near = np.flatnonzero(rss <= rss[best] + noise2)
     step = float(places[1] - places[0])
-    # the grid's part, and the scatter of the place beside level, slopes and turn: of a sharp hinge
-    # by linear propagation, of a rounder one by where the sum of squares rises
-    scatter = max(_scatter(x, place, turn, noise2), 0.5 * float(near[-1] - near[0]) * step)
-    return Slack(place, math.hypot(scatter, step / math.sqrt(3.0)), before, after)
+    # beside level, slopes and turn: of a sharp hinge by linear propagation, of a rounder one by
+    # where the sum of squares rises
+    shift, scatter = _place(x, y, place, turn, noise2)
+    scatter = max(scatter, 0.5 * float(near[-1] - near[0]) * step)
+    place += min(max(shift, -0.5 * step), 0.5 * step)
+    return Slack(place, math.hypot(scatter, _LEFT * step), before, after)
 
 
-def _scatter(x: FloatArray, place: float, turn: float, noise2: float) -> float:
-    """Standard deviation of the place of a hinge whose level, slope and turn are free as well."""
+def steepest_behind(strain: FloatArray, stress: FloatArray, start: float, window: float) -> float:
+    """Greatest slope over three windows behind a strain, up to twelve; 0 where nothing lies there.
+
+    Where it is greater than that of the window itself the hinge is round, and the strip not taut.
+
+    Parameters
+    ----------
+    strain, stress : of one loading, loading positive, shape (n,)
+    start : strain from which on the strip is taken for taut
+    window : width of the window of the modulus `[1]`
+    """
+    edges = np.searchsorted(strain, start + window * np.arange(1, _REACH + 1)).tolist()
+    slopes = [0.0]
+    for first, end in zip(edges, edges[_BEYOND:], strict=False):
+        x = strain[first:end]
+        if x.size >= _FEWEST and x[-1] > x[0]:
+            slopes.append(_slope(x, stress[first:end]))
+    return max(slopes)
+
+
+def _place(
+    x: FloatArray, y: FloatArray, place: float, turn: float, noise2: float
+) -> tuple[float, float]:
+    """One step of Gauss and Newton from a place on the grid, and the standard deviation there."""
     ones, behind = np.ones(x.size), np.asarray(x > place, dtype=np.float64)
     basis, _ = np.linalg.qr(np.stack([ones, x, behind * (x - place)], axis=1))
     alone = behind - basis @ (basis.T @ behind)
-    return math.sqrt(noise2 / float(alone @ alone)) / abs(turn)
+    size = float(alone @ alone)
+    return -float(alone @ y) / (size * turn), math.sqrt(noise2 / size) / abs(turn)
 
 
 def _looks_taut(strain: FloatArray, stress: FloatArray, window: float) -> bool:

@@ -7,13 +7,16 @@ from collections.abc import Mapping
 from deamat.core.quantity import Contribution
 from deamat.core.records import Condition, Flag, MeasuredValue
 from deamat.estimators.curves.rupture import count_loadings
-from deamat.estimators.curves.slack import Slack
+from deamat.estimators.curves.slack import Slack, steepest_behind
 from deamat.estimators.curves.slope import curvature
 from deamat.estimators.curves.stress_strain import window
 from deamat.techniques.shared.modulus import WindowLine, modulus, percent, rising_line
 from deamat.techniques.shared.stress_strain import disagreement
 from deamat.techniques.tension.config import MODULI, TensionConfig
 from deamat.techniques.tension.pull import Pull
+
+_CERTAIN = 3.0  # standard errors by which a later slope is steeper, ...
+_NOTICED = 0.02  # ... and the fraction that is worth a word
 
 
 def plain_modulus(
@@ -84,6 +87,15 @@ def taut_modulus(
     x, y = strain[inside], stress[inside]
     line = rising_line(x, y, config.min_samples)
     bend = abs(curvature(x, y))  # where the curve bends, the slope goes with the zero of strain
+    steeper = steepest_behind(strain, stress, slack.strain, high - low) - line.slope
+    flags: tuple[Flag, ...] = ()
+    if steeper > max(_CERTAIN * line.standard_error, _NOTICED * line.slope):
+        said = (
+            f"the curve goes on to a slope of {(line.slope + steeper) / 1e3:.4g} kPa behind the "
+            f"window, from {line.slope / 1e3:.4g} kPa in it: a round toe; the difference is in the "
+            "uncertainty"
+        )
+        flags = (Flag("toe", said),)
     return modulus(
         MODULI[1],
         line,
@@ -95,9 +107,14 @@ def taut_modulus(
         conditions=conditions,
         flags=pull.flags
         + disagreement(curve, inside, config.own_columns_tolerance)
-        + several_loadings(pull, "first"),
+        + several_loadings(pull, "first")
+        + flags,
         diagnostics={"slack_strain": slack.strain},
-        further=(Contribution("where the strip is taut", bend * slack.u_strain, shared=False),),
+        further=(
+            Contribution("where the strip is taut", bend * slack.u_strain, shared=False),
+            # one-sided, and much the same for all strips of a mould and a pair of grips
+            Contribution("steeper behind the window", max(steeper, 0.0), shared=True),
+        ),
     )
 
 

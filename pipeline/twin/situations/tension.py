@@ -92,7 +92,7 @@ def _made(key: str, distort: Distortion, rng: Generator, severity: float) -> Mad
 
 
 def _value(key: str, pull: _Pull) -> float:
-    if key == "tensile_modulus":
+    if key in (_MODULUS, _COMPENSATED):
         strain = np.linspace(0.0, _WINDOW, 201)
         return float(np.polyfit(strain, _stress(strain, pull.modulus_Pa), 1)[0])
     if key == "elongation_at_break":
@@ -104,8 +104,9 @@ def _naive(key: str, pull: _Pull) -> float:
     """What a short script says: slope of what lies in the window, greatest load, last strain."""
     strain = pull.travel_m / _GAUGE_m
     stress = pull.force_N / (_WIDTH_m * _THICKNESS_m)
-    if key == "tensile_modulus":
-        inside = (strain >= 0.0) & (strain <= _WINDOW)
+    if key in (_MODULUS, _COMPENSATED):
+        start = _HINGE if key == _COMPENSATED else 0.0
+        inside = (strain >= start) & (strain <= start + _WINDOW)
         return float(np.polyfit(strain[inside], stress[inside], 1)[0]) if inside.sum() > 2 else 0.0
     top = int(stress.argmax())
     return float(strain[top]) if key == "elongation_at_break" else float(stress[top])
@@ -118,6 +119,13 @@ def _position(_rng: Generator, pull: _Pull, offset: float) -> _Pull:
 def _slack(_rng: Generator, pull: _Pull, slack: float) -> _Pull:
     late = np.maximum(pull.travel_m - slack * _GAUGE_m, 0.0)
     return replace(pull, force_N=np.interp(late, pull.travel_m, pull.force_N))
+
+
+def _rounded(_rng: Generator, pull: _Pull, over: float) -> _Pull:
+    """The strip becomes taut around a strain, gradually."""
+    strain = pull.travel_m / _GAUGE_m - _HINGE
+    taut = 0.5 * (strain + np.hypot(strain, over))
+    return replace(pull, force_N=np.interp(_GAUGE_m * taut, pull.travel_m, pull.force_N))
 
 
 def _untared(_rng: Generator, pull: _Pull, part: float) -> _Pull:
@@ -193,6 +201,8 @@ def _noisy(rng: Generator, pull: _Pull, part: float) -> _Pull:
 
 
 _MODULUS, _STRENGTH, _ELONGATION = "tensile_modulus", "tensile_strength", "elongation_at_break"
+_COMPENSATED = "tensile_modulus_toe_compensated"
+_HINGE, _SHARP = 0.003, 1e-6  # strain: where a strip with slack is taut, and over which at least
 
 
 def _situation(
@@ -223,6 +233,14 @@ SITUATIONS = (
         "Flagged; the compensated modulus stands beside the plain one; refused where the window "
         "holds nothing but slack.",
         ("slack",), "slack, strain", (0.0007, 0.0017, 0.0036), _slack,
+    ),
+    Situation(
+        "tension-round-toe", "tension", _COMPENSATED,
+        "The strip hangs loose at first, and becomes taut gradually.",
+        "Counted from where a hinge fits best; how much steeper the curve becomes later is in the "
+        "uncertainty, and flagged.",
+        ("toe",), "strain over which it becomes taut", (0.0006, 0.0022, 0.0095),
+        lambda rng, severity: _made(_COMPENSATED, _rounded, rng, severity or _SHARP),
     ),
     _situation(
         "tension-untared", _STRENGTH,

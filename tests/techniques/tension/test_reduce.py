@@ -320,3 +320,18 @@ def test_a_load_that_sticks_within_the_window_refuses_the_modulus() -> None:
     measured = pull(strain, stress)
     (refusal,) = [r for r in measured.refusals if r.key == "tensile_modulus"]
     assert refusal.reason.startswith("held-channel: the load holds one value from sample 6 to 18")
+
+
+@pytest.mark.parametrize(
+    ("over", "flagged"), [(0.0, False), (0.001, False), (0.005, True), (0.02, True)]
+)
+def test_a_round_toe_is_in_the_uncertainty_of_the_compensated_modulus(
+    over: float, flagged: bool
+) -> None:
+    taut = STRAIN - 0.004
+    stress = 5e5 * 0.5 * (taut + np.hypot(taut, over))
+    value = by_key(pull(STRAIN, stress))["tensile_modulus_toe_compensated"]
+    q = value.quantity
+    assert abs(q.value - 5e5) < 2.0 * q.standard_uncertainty + 1e-3 * 5e5
+    assert q.standard_uncertainty < 0.3 * 5e5
+    assert ("toe" in {flag.name for flag in value.flags}) == flagged
