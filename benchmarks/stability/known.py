@@ -75,6 +75,10 @@ _KNOWN: dict[tuple[str, str], tuple[str, tuple[str, ...]]] = {
         "a few specimens do not show skew; no value is extreme yet",
         ("sd ln 0.5", "sd ln 1", "sd ln 2"),
     ),
+    ("mean with limits", "lognormal, sd ln"): (
+        "a few specimens do not show skew; no value is extreme yet",
+        ("0.8",),
+    ),
     ("mean", "undeclared batch error"): (
         "values that share an error agree with each other: only a second batch could show it",
         tuple(f"{part} % of variance" for part in (5, 20, 50, 80)),

@@ -14,7 +14,7 @@ End = Literal["broke", "reversed", "stopped"]
 
 _BACK = 0.02  # of the greatest strain: a return by more is a reversal, by less the crosshead's stop
 _ON_CURVE = 0.5  # of the load that loading needed there: an unbroken specimen still carries it
-_SLIP = 0.05  # of the load: a sudden loss of more than this is no property of a rubber
+_SLIP = 0.03  # of the load: a sudden loss of more than this is no property of a rubber
 _SLIPPABLE = 0.1  # of the greatest load: below it a loss is noise or a toe
 _RECOVERED = 0.3  # of the load lost that must come back for the loss to be a slip
 
