@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from deamat.core.channels import NO_CHANNELS, Channels
 from deamat.core.unit_spellings import unit_as_written
 from deamat.core.units import UnknownUnit, si_factor
 from deamat.formats.durations import clock_unit
@@ -45,6 +46,7 @@ class Choice:
     labelled : how many columns have a label that the technique knows
     twins : are several columns the same quantity?
     decimal : mark that is declared, empty where the cells tell it
+    channels : what the register says of the columns, which is applied
     """
 
     heading: Heading
@@ -55,6 +57,7 @@ class Choice:
     labelled: int
     twins: bool = False
     decimal: str = ""
+    channels: Channels = NO_CHANNELS
 
     @property
     def used(self) -> tuple[Taken, ...]:
@@ -77,13 +80,22 @@ class _Column:
     means: dict[str, int]
 
 
-def choose(heading: Heading, technique: str) -> Choice:
-    """Understand a heading for one technique, or say what is missing."""
+def choose(heading: Heading, technique: str, channels: Channels = NO_CHANNELS) -> Choice:
+    """Understand a heading for one technique, or say what is missing.
+
+    Parameters
+    ----------
+    channels : what the register says of single columns; their labels are what it says
+    """
     asked = ASKED[technique]
     columns = [
         _column(label, unit, asked)
         for label, unit in zip(heading.labels, heading.units, strict=True)
     ]
+    missing = _missing_channels(heading, channels)
+    if missing:
+        return Choice(heading, technique, (), (), missing, len(columns))
+    columns = [_in_its_role(column, channels) for column in columns]
     labelled = len([column for column in columns if column.means])
     twins: dict[str, str] = {}
     known = {
@@ -93,11 +105,12 @@ def choose(heading: Heading, technique: str) -> Choice:
     }
     for need in asked.needs:
         if all(name in known for name in need):
-            return _complete(heading, technique, asked, need, known, labelled)
+            return _scaled(_complete(heading, technique, asked, need, known, labelled), channels)
     for need in asked.needs:
         found = None if twins else _by_unit(columns, need, known)
         if found is not None:
-            return _complete(heading, technique, asked, need, {**known, **found}, labelled)
+            complete = _complete(heading, technique, asked, need, {**known, **found}, labelled)
+            return _scaled(complete, channels)
     faults = [*twins.values()] or _faults(columns, asked, known)
     return Choice(heading, technique, (), (), tuple(dict.fromkeys(faults)), labelled, bool(twins))
 
@@ -119,6 +132,45 @@ def _column(label: str, written: str, asked: Asked) -> _Column:
     if written and not unit and means:
         return _Column(label, written, "", "", f"{label!r} has the unknown unit {written!r}", means)
     return _Column(label, written, unit, si_factor(unit)[0] if unit else "", "", means)
+
+
+def _missing_channels(heading: Heading, channels: Channels) -> tuple[str, ...]:
+    """Name the channels of the register that the heading does not have, or has twice."""
+    written = [plain_label(label) for label in heading.labels]
+    counts = {label: written.count(plain_label(label)) for label in channels.labels.values()}
+    return tuple(
+        f"{'no' if not count else str(count)} columns are called {label!r}, which the register "
+        "names as a channel"
+        for label, count in counts.items()
+        if count != 1
+    )
+
+
+def _in_its_role(column: _Column, channels: Channels) -> _Column:
+    """Let a column mean what the register says, and no other column mean that."""
+    for name, label in channels.labels.items():
+        if plain_label(column.label) == plain_label(label):
+            volts = name == "current_A" and name in channels.ratios and column.si == "V"
+            return replace(column, means={name: 0}, si="A" if volts else column.si)
+    means = {name: rank for name, rank in column.means.items() if name not in channels.labels}
+    return replace(column, means=means)
+
+
+def _scaled(choice: Choice, channels: Channels) -> Choice:
+    """Multiply the channels by the ratios of their probes."""
+    ratios = channels.ratios
+
+    def scaled(taken: Taken) -> Taken:
+        return replace(taken, factor=taken.factor * ratios.get(taken.name, 1.0))
+
+    if not channels:
+        return choice
+    return replace(
+        choice,
+        channels=channels,
+        needed=tuple(map(scaled, choice.needed)),
+        further=tuple(map(scaled, choice.further)),
+    )
 
 
 def _fits(column: _Column, name: str) -> bool:

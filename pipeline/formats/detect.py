@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import contextlib
 import difflib
+import re
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
@@ -14,7 +15,7 @@ from functools import partial
 
 from deamat.core.errors import ConfigError, RawFileError
 from deamat.core.recording import Recording
-from deamat.formats import FORMATS, plain, workbook
+from deamat.formats import FORMATS, plain, tdms, workbook
 from deamat.formats.declared import format_of, is_declared
 from deamat.formats.exports import EXPORTS_FILE, Export
 from deamat.formats.format import Format
@@ -26,24 +27,47 @@ _HINT = (
     "the format in the register's `format` column"
 )
 _AS_TEXT = "export the data as text (CSV) and register that file"
+_BLUEHILL = "export the raw data in Bluehill and register Specimen_RawData_1.csv"
+# files by the end of their names: what they are, and what to export instead
+_NAMED = (
+    (re.compile(r"\.i[sm]_[a-z]+"), "a Bluehill sample or method, which holds no curve", _BLUEHILL),
+    (re.compile(r"\.id_[a-z]+"), "Bluehill's own binary data", _BLUEHILL),
+    (re.compile(r"\.zs2"), "a series of Zwick testXpert in its own form",
+     "export the curves from testXpert as text or to Excel"),
+    (re.compile(r"\.mpr"), "a BioLogic measurement in binary form",
+     "export it as text (.mpt) from EC-Lab"),
+    (re.compile(r"\.tri"), "a TRIOS file in its own form", "export it as text from TRIOS"),
+    (re.compile(r"\.tdms_index"), "the index of a LabVIEW measurement", "register the .tdms"),
+)  # fmt: skip
 _COMPRESSED = ("a compressed file", "unpack it and register what is inside")
 # how files start that are no text, and what to do with them
 _BINARY = {
     b"\xd0\xcf\x11\xe0": ("an Excel workbook of the old form (.xls)", "save it as .xlsx or CSV"),
     b"PK\x03\x04": ("an archive that is no whole Excel workbook", "save the sheet as CSV"),
-    b"TDSm": ("a LabVIEW measurement in binary form (.tdms)", _AS_TEXT),
     b"\x89HDF": ("an HDF5 file", _AS_TEXT),
     b"%PDF": ("a PDF document", _AS_TEXT),
     b"\x1f\x8b\x08\x00": _COMPRESSED,
     b"\x1f\x8b\x08\x08": _COMPRESSED,
 }
-KNOWN_FORMS = (*(form.name for form in FORMATS), plain.FORMAT.name, workbook.FORMAT.name)
+_WITHOUT_HEAD = (
+    plain.FORMAT,
+    tdms.FORMAT,
+    workbook.FORMAT,
+)  # known by their first bytes, or by none
+KNOWN_FORMS = tuple(form.name for form in (*FORMATS, *_WITHOUT_HEAD))
 _DELIMITERS = {"tab": "\t", "semicolon": ";", "comma": ","}
 
 
-def is_binary(data: bytes) -> bool:
-    """Say whether bytes start as a file that is no text."""
-    return data[:4] in _BINARY
+def is_binary(file: RawFile) -> bool:
+    """Say whether a file is no text."""
+    return file.data[:4] in (*_BINARY, tdms.MAGIC) or _by_its_name(file) is not None
+
+
+def _by_its_name(file: RawFile) -> tuple[str, str] | None:
+    """Return what a file of a machine's own form is, and what to export instead."""
+    name = file.path.casefold()
+    ending = name[name.rfind(".") :]
+    return next(((what, hint) for end, what, hint in _NAMED if end.fullmatch(ending)), None)
 
 
 def detect(file: RawFile, exports: Sequence[Export] = ()) -> Format:
@@ -59,6 +83,11 @@ def detect(file: RawFile, exports: Sequence[Export] = ()) -> Format:
         nearest table
     """
     start = file.data[:4]
+    if start == tdms.MAGIC:
+        return tdms.FORMAT
+    if (own_form := _by_its_name(file)) is not None:
+        what, hint = own_form
+        raise RawFileError(file.path, f"no format recognises this file: it is {what}", hint=hint)
     if start in _BINARY:
         if workbook.is_workbook(file.data):
             return workbook.FORMAT
@@ -146,7 +175,7 @@ def by_name(name: str, exports: Sequence[Export] = ()) -> Format:
     ------
     ConfigError : there is no such format; names the nearest one
     """
-    forms = (*FORMATS, plain.FORMAT, workbook.FORMAT, *map(format_of, exports))
+    forms = (*FORMATS, *_WITHOUT_HEAD, *map(format_of, exports))
     for form in forms:
         if form.name == name:
             return form
@@ -167,3 +196,18 @@ def _found(file: RawFile) -> str:
     if not counts[word]:
         return f"{file.encoding}, no delimiter"
     return f"{file.encoding}, probably {word}-separated with {counts[word][0][0] + 1} columns"
+
+
+def insist_on_channels(file: RawFile, recording: Recording) -> None:
+    """Refuse channels of the register where the form of the file says itself what they are.
+
+    Raises
+    ------
+    RawFileError : a ratio might be applied twice, or not at all
+    """
+    if file.channels and not file.channels.said.items() <= recording.metadata.items():
+        raise RawFileError(
+            file.path, "the register names channels or ratios, and a file of the form "
+            f"{recording.source.reader} says itself what its columns are",
+            hint="leave the register's channel columns empty for this file",
+        )  # fmt: skip

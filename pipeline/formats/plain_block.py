@@ -34,6 +34,8 @@ class _Heading:
 
 def block_of(file: RawFile) -> Recording | None:
     """Read a file whose rows are nothing but numbers, or return None where that is not certain."""
+    if file.channels:
+        return None
     heading = file.once(_heading, file.technique, file.encoding, file.open_encoding)
     if heading is None:
         return None

@@ -118,6 +118,7 @@ def recording_from(
     for taken in used:
         left[taken.column] = ""
     rest = ", ".join(label for label in left if label)
+    metadata = {**metadata, **choice.channels.said}
     return Recording(
         _for_viscosity(columns) if choice.technique == "viscosity" else columns,
         {**metadata, "columns not used": rest} if rest else metadata,

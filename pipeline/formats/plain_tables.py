@@ -101,7 +101,7 @@ def complete_among(
     """
     within = [heading.only(file.columns) for heading in proposed]
     choices = [
-        choose(heading, technique)
+        choose(heading, technique, file.channels)
         for technique in ([file.technique] if file.technique in ASKED else ASKED)
         for heading in within
     ]

@@ -12,6 +12,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Concatenate, ParamSpec, TypeVar, cast
 
+from deamat.core.channels import NO_CHANNELS, Channels
 from deamat.core.errors import RawFileError
 
 _MANY_LINES, _FEW_LINES = 64, 16  # enough for any header, and for nearly every one
@@ -171,6 +172,7 @@ class RawFile:
     place : what the register names behind the `#` of its file: a sheet, columns, or both (`Data`,
         `D:F`, `Data!D:F`)
     declared : encoding that the register declares, empty where the bytes decide
+    channels : what the register says of the channels of a recorder
     """
 
     path: str
@@ -179,6 +181,7 @@ class RawFile:
     technique: str = ""
     place: str = ""
     declared: str = ""
+    channels: Channels = NO_CHANNELS
 
     @cached_property
     def sha256(self) -> str:

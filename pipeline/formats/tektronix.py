@@ -62,7 +62,7 @@ def _read(file: RawFile) -> Recording:
     source = said.get("Source", "CH")
     names = f"Time ({said['Horizontal Units']}),{source} ({said['Vertical Units']})"
     recording = read_rewritten(file, [names, *rows], _NAME, shift=1)
-    return replace(recording, metadata=said)
+    return replace(recording, metadata={**recording.metadata, **said})
 
 
 FORMAT = Format(_NAME, "Tektronix oscilloscope", _recognises, _read, ",")

@@ -10,13 +10,14 @@ from pathlib import Path
 import numpy as np
 
 from deamat.consistency.seen import Seen, look
+from deamat.core.channels import channels_of
 from deamat.core.errors import ConfigError, RawFileError
 from deamat.core.ledger import Failure
 from deamat.core.recording import Recording, Specimen
 from deamat.core.records import Flag, Measurement
 from deamat.core.register import ENCODING, SHEET
 from deamat.core.technique import Context
-from deamat.formats.detect import by_name, detect
+from deamat.formats.detect import by_name, detect, insist_on_channels
 from deamat.formats.documentation import contradictions
 from deamat.formats.exports import Export
 from deamat.formats.format import Format
@@ -110,11 +111,12 @@ def _read(task: Task, path: str) -> Recording:
     data, notes = read_raw(task.raw, path), task.specimen.notes
     file = RawFile(
         path, data, task.ends_open, task.specimen.technique, notes.get(SHEET, ""),
-        notes.get(ENCODING, ""),
+        notes.get(ENCODING, ""), channels_of(task.specimen),
     )  # fmt: skip
     if file.sha256 != task.sha256:
         raise RawFileError(path, "the file changed while it was being read", hint="run again")
     recording = _format(task.specimen, file, task.exports).read(file)
+    insist_on_channels(file, recording)
     _insist_on_scale(recording)
     if task.changed:
         campaign = task.specimen.campaign

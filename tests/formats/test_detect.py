@@ -10,13 +10,13 @@ import pytest
 
 from deamat import formats
 from deamat.core.errors import ConfigError, RawFileError
-from deamat.formats import FORMATS, detect, plain, workbook
+from deamat.formats import FORMATS, detect, plain, tdms, workbook
 from deamat.formats.format import Format
 from deamat.formats.rawfile import Head, RawFile
 from tests.formats.samples import BY_NAME, SAMPLES, Sample
 from tests.formats.test_good_files import every_sample
 
-EVERY = (*FORMATS, plain.FORMAT, workbook.FORMAT)
+EVERY = (*FORMATS, plain.FORMAT, tdms.FORMAT, workbook.FORMAT)
 NAMES = ", ".join(form.name for form in EVERY)
 
 

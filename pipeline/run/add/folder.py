@@ -208,7 +208,7 @@ def _facts(path: str, said: str, campaign: Campaign, look: _Look) -> list[Facts]
         data = read_raw(look.source, path)
         found = facts_of(RawFile(path, data), technique, look.exports)
     except RawFileError as error:
-        reason = str(error).removeprefix(f"{path}: ")
+        reason = f"{error.within}: {error.reason}".removeprefix(": ")
         look.added.say("not read", f"{path}: {reason}; look at it with `deamat check`")
         return []
     new = []

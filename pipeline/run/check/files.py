@@ -124,7 +124,7 @@ def _unread(file: RawFile, technique: str, errors: Sequence[RawFileError], asked
     except RawFileError as fault:
         error, nearest = fault, ""
     hint = error.hint
-    if not nearest and not error.column and not is_binary(file.data):
+    if not nearest and not error.column and not is_binary(file):
         nearest = nearest_form(file) or table_found(file)
         hint += f"; or declare its form: deamat learn {shlex.quote(file.path)}"
     every = [error, *error.others, *(errors if technique else ())]

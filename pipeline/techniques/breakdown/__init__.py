@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from deamat.core.channels import CHANNEL_COLUMNS
 from deamat.core.register import RegisterForm
 from deamat.core.technique import Technique
 from deamat.techniques.breakdown.config import YIELDS, BreakdownConfig
@@ -26,7 +27,7 @@ TECHNIQUE = Technique(
     reduce=reduce,
     summarise=summarise,
     figure=figure,
-    register=RegisterForm(notes=("censored",), asked=("thickness_m",)),
+    register=RegisterForm(notes=("censored", *CHANNEL_COLUMNS), asked=("thickness_m",)),
     measures=("voltage",),
 )
 
