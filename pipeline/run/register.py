@@ -16,7 +16,7 @@ from deamat.core.errors import ConfigError, RawFileError
 from deamat.core.manifest import Difference, compare, format_manifest, parse_manifest
 from deamat.formats.rawfile import read_raw
 from deamat.run.first_account import extended
-from deamat.run.folders import Stat, walk
+from deamat.run.folders import Input, Stat, walk
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +64,11 @@ def register(
     old = {}
     if MANIFEST_FILE in seen:
         old = _registered(raw, f"{campaign}/{MANIFEST_FILE}", seen[MANIFEST_FILE])
-    difference = compare(old, found, partial(extended, folder))
+    inputs = {
+        f"{campaign}/{path}": Input(stat.size, found.get(path, ""), stat.odd)
+        for path, stat in seen.items()
+    }
+    difference = compare(old, found, partial(extended, folder, inputs))
     departing = (*difference.changed, *difference.missing)
     accepted = set(departing) if accept_all else _accepted(accept, campaign, departing)
     waiting = [name for name in departing if name not in accepted]
