@@ -34,6 +34,7 @@ if TYPE_CHECKING:  # `as` says to type checkers that a name is exported
     from deamat.core.units import UnknownUnit as UnknownUnit
     from deamat.materials.card import MaterialCard as MaterialCard
     from deamat.materials.card import read_card as read_card
+    from deamat.materials.correlation import correlation as correlation
     from deamat.materials.curves import CurvesError as CurvesError
     from deamat.materials.database import Database as Database
     from deamat.materials.database import DatabaseError as DatabaseError
@@ -60,6 +61,7 @@ _HOMES = {
     "deamat.core.records": ("Law", "PropertyRecord"),
     "deamat.core.units": ("UnknownUnit",),
     "deamat.materials.card": ("MaterialCard", "read_card"),
+    "deamat.materials.correlation": ("correlation",),
     "deamat.materials.curves": ("CurvesError",),
     "deamat.materials.database": (
         *("Database", "DatabaseError", "MissingMaterial", "open_database"),

@@ -58,7 +58,7 @@ def printed(page: Path) -> list[tuple[str, str]]:
     return found
 
 
-@pytest.mark.parametrize(("page", "count"), [(PAGE, 4), (API, 10)], ids=["worked-example", "api"])
+@pytest.mark.parametrize(("page", "count"), [(PAGE, 4), (API, 11)], ids=["worked-example", "api"])
 def test_it_prints_what_the_page_says(
     home: Path, monkeypatch: pytest.MonkeyPatch, page: Path, count: int
 ) -> None:

@@ -11,6 +11,7 @@ from deamat.core.errors import MissingProperty, OutOfRange, PipelineError
 from deamat.core.records import Condition, PropertyRecord
 from deamat.estimators.weibull.area import area_ratio
 from deamat.materials.card import MaterialCard
+from deamat.materials.correlation import independent_correlation
 
 PERMITTIVITY, STRENGTH, SHAPE = "relative_permittivity", "breakdown_strength", "weibull_shape"
 
@@ -23,6 +24,9 @@ _OWN = {
     "rate_V_per_s": STRENGTH,
 }
 _STATE = ("cure", "age")
+_NOT_TOGETHER = (
+    "the card lists no correlation of breakdown strength and shape: they are drawn independently"
+)
 
 
 class MixedConditions(PipelineError):
@@ -37,6 +41,7 @@ class CardValues:
     ----------
     film_modulus, permittivity, passive_modulus : records
     strength, shape : of the film's breakdown; None where they are not known, `unknown` says why
+    fit_correlation : of their independent errors, as the film's card says it; 0 where it does not
     area_ratio : electrode area of the strip over that of the breakdown tests `[1]`
     synthetic : materials whose card is simulated
     notes : what a reader must know
@@ -51,6 +56,7 @@ class CardValues:
     unknown: str
     synthetic: tuple[str, ...]
     notes: tuple[str, ...]
+    fit_correlation: float = 0.0
 
     def records(self) -> Iterator[PropertyRecord]:
         """Yield each record that there is once, that of the passive layer last."""
@@ -79,12 +85,15 @@ def gather(
     """
     modulus = declared.model.modulus
     asked = {key: _for(key, where) for key in ("modulus", PERMITTIVITY, STRENGTH)}
-    strength, shape, ratio, unknown = None, None, 1.0, ""
+    strength, shape, ratio, unknown, together = None, None, 1.0, "", 0.0
     notes: list[str] = []
     try:
         strength = film.record(STRENGTH, **asked[STRENGTH])
         shape = film.record(SHAPE, **asked[STRENGTH])
         ratio, notes = _area_ratio(strength, declared)
+        together = independent_correlation(film.correlations, strength, shape)
+        if together == 0.0:
+            notes.append(_NOT_TOGETHER)
     except (MissingProperty, OutOfRange) as error:
         strength = shape = None
         unknown = str(error)
@@ -98,6 +107,7 @@ def gather(
         unknown,
         tuple(dict.fromkeys(c.material for c in (film, passive) if c.synthetic)),
         tuple(notes),
+        together,
     )
     _one_state(found)
     return found

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from deamat.actuator.card_values import SHAPE, STRENGTH, CardValues
+from deamat.actuator.card_values import CardValues
 from deamat.actuator.declared import Designs, Electrode
 from deamat.actuator.ranges import Reals
 from deamat.actuator.strip import Strip
@@ -17,10 +17,6 @@ from deamat.core.quantity import Contribution
 from deamat.core.records import PropertyRecord
 from deamat.core.units import to_si
 from deamat.materials.correlation import cause_of, technique_of
-
-# Scale and shape of one Weibull fit err together. In large complete samples the correlation of
-# ln(scale) and shape is 0.2570 / sqrt(1.1087 x 0.6079) = 0.313 (Lawless, chapter 5).
-_JOINT = {STRENGTH: 1.0, SHAPE: 0.313}
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,8 +77,11 @@ def inputs_of(
         ]
     inputs.append(_measured(values.permittivity, "relative_permittivity"))
     if values.strength and values.shape:
-        inputs.append(_measured(values.strength, "breakdown_strength_V_m"))
-        inputs.append(_measured(values.shape, "weibull_shape"))
+        inputs += _of_one_fit(
+            _measured(values.strength, "breakdown_strength_V_m"),
+            _measured(values.shape, "weibull_shape"),
+            values.fit_correlation,
+        )
     u_MPa = electrode.u_youngs_modulus_MPa
     thicknesses = (
         ("de layer", "film_thickness_m", strip.film_thickness_m, spread.u_de_thickness_um),
@@ -118,8 +117,6 @@ def _measured(record: PropertyRecord, *drives: str) -> Input:
     for c in lines:
         if c.shared:
             budget.append(replace(c, source=cause_of(c, record)))
-        elif record.key in _JOINT:
-            budget += _joint(c, test, _JOINT[record.key])
         else:
             budget.append(replace(c, source=f"{c.source} of {name}"))
     q = record.quantity
@@ -132,10 +129,24 @@ def _declared(name: str, drives: str, value: Reals, u: float | None, unit: str =
     return Input(name, (drives,), float(value), unit, budget)
 
 
-def _joint(line: Contribution, test: str, correlation: float) -> list[Contribution]:
-    """Split an error of a fit into the part that scale and shape share, and a rest of its own."""
-    own = math.sqrt(1.0 - correlation**2) * line.u
-    return [
-        replace(line, source=f"fit of {test}", u=correlation * line.u),
-        replace(line, source=f"fit of {test}, shape alone", u=own),
-    ]
+def _of_one_fit(scale: Input, shape: Input, correlation: float) -> list[Input]:
+    """Let the independent errors of scale and shape move together.
+
+    That of the shape is split into the part that goes with the scale's, and a rest of its own.
+    """
+    u = math.sqrt(math.fsum(c.u**2 for c in scale.budget if not c.shared))
+    if u == 0.0 or correlation == 0.0:
+        return [scale, shape]
+    fit = f"fit of {scale.test}"
+    together = [c for c in scale.budget if c.shared]
+    together.append(Contribution(fit, u, False))
+    budget: list[Contribution] = []
+    for c in shape.budget:
+        if c.shared:
+            budget.append(c)
+            continue
+        with_scale = c.scaled(correlation)
+        budget.append(replace(with_scale, source=fit, inverse=correlation < 0.0))
+        alone = c.scaled(math.sqrt(1.0 - correlation**2))
+        budget.append(replace(alone, source=f"{fit}, shape alone"))
+    return [replace(scale, budget=tuple(together)), replace(shape, budget=tuple(budget))]

@@ -81,8 +81,8 @@ def design_document(design: Design) -> Document:
         "u_curvature_per_m": prediction.u,
         "first_order_holds": prediction.holds,
         "monte_carlo": {
-            "mean_per_m": design.draws.mean,
-            "sd_per_m": design.draws.sd,
+            "median_per_m": design.draws.median,
+            "sd_per_m": _finite(design.draws.sd),
             "ci95_per_m": list(design.draws.interval95),
             "pull_in_probability": design.draws.pull_in_probability,
             "draws": design.draws.draws,
@@ -257,7 +257,7 @@ def _answer(design: Design) -> list[str]:
     force_uN = from_si(design.blocked_force_N, "uN")
     return [
         f"curvature   {p.value:.4g} ± {p.u:.2g} 1/m to first order{holds}",
-        f"            {mc.mean:.4g} ± {mc.sd:.2g} 1/m, 95 % from {low:.4g} to {high:.4g} 1/m",
+        f"            {mc.median:.4g} 1/m, 95 % from {low:.4g} to {high:.4g} 1/m",
         f"            by Monte Carlo ({drawn})",
         f"force       {force_uN:.3g} uN blocked at the tip",
     ]

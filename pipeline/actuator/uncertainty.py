@@ -13,12 +13,14 @@ import numpy as np
 
 from deamat.actuator.inputs import Input
 from deamat.actuator.model import Response
-from deamat.actuator.ranges import within
+from deamat.actuator.ranges import RANGES, within
 from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
 
 _STEP = 1e-5  # relative; central differences are then good to about 1e-9
 _FAR = 2.0  # standard uncertainties: where the linear answer is held against the model
+_NO_VARIANCE = 2.0  # degrees of freedom up to which a t distribution has none
+_FARTHEST = 50.0  # e-folds
 _STRAIGHT = 0.15  # asymmetry there, up to which both methods were found to agree within 5 %
 
 
@@ -47,13 +49,15 @@ class MonteCarlo:
 
     Parameters
     ----------
-    mean, sd : over the draws that have an equilibrium
+    median : of the draws that have an equilibrium
+    sd : their standard deviation; NaN where an input has the t distribution of three specimens or
+        fewer, which has none
     interval95 : 2.5 and 97.5 % quantiles of those
     pull_in_probability : fraction of the draws whose film pulls in `[1]`
     draws : how many
     """
 
-    mean: float
+    median: float
     sd: float
     interval95: tuple[float, float]
     pull_in_probability: float
@@ -138,7 +142,9 @@ def monte_carlo(
     """Draw the inputs from log-normal distributions and look at the distribution of the prediction.
 
     Log-normal keeps thicknesses and moduli above zero; each source is drawn once for all inputs
-    that it enters.
+    that it enters, from Student's t distribution where its uncertainty was estimated from a few
+    specimens: the mean of n has n - 1 degrees of freedom. Draws beyond `ranges.RANGES` count as
+    their end.
 
     Parameters
     ----------
@@ -150,7 +156,7 @@ def monte_carlo(
     ------
     FitRefused : fewer than half of the draws have an equilibrium
 
-    Source: JCGM 101:2008.
+    Source: JCGM 101:2008, 6.4.9 for the means of few specimens.
     """
     within("draws", draws, 100, 10_000_000)
     found = np.broadcast_to(response(_sample(inputs, draws, seed)), (draws,))
@@ -161,10 +167,11 @@ def monte_carlo(
             f"{100 * lost:.0f} % of {draws} draws pull in: "
             "lower the voltage, or know the film better"
         )
-    low, high = np.quantile(good, (0.025, 0.975))
-    return MonteCarlo(
-        float(good.mean()), float(good.std(ddof=1)), (float(low), float(high)), lost, draws
-    )
+    low, median, high = np.quantile(good, (0.025, 0.5, 0.975)).tolist()
+    dof = [c.degrees_of_freedom for x in inputs for c in x.budget]
+    has_sd = all(found is None or found > _NO_VARIANCE for found in dof)
+    sd = float(good.std(ddof=1)) if has_sd else math.nan
+    return MonteCarlo(median, sd, (low, high), lost, draws)
 
 
 def tornado(inputs: Sequence[Input], prediction: FirstOrder, response: Response) -> tuple[Bar, ...]:
@@ -199,11 +206,30 @@ def _sample(inputs: Sequence[Input], draws: int, seed: int) -> dict[str, FloatAr
         error = np.zeros(draws)
         for c in x.budget:
             if c.source not in drawn:
-                drawn[c.source] = rng.standard_normal(draws)
+                drawn[c.source] = _standard_errors(rng, c.degrees_of_freedom, draws)
             error += c.signed_u * drawn[c.source]
         sigma = math.sqrt(math.log1p((x.u / x.value) ** 2))
         scale = sigma / x.u if x.u else 0.0
-        values |= dict.fromkeys(x.drives, x.value * np.exp(scale * error - 0.5 * sigma**2))
+        exponent = np.clip(scale * error - 0.5 * sigma**2, -_FARTHEST, _FARTHEST)
+        found = x.value * np.exp(exponent)
+        values |= {field: _allowed(field, found) for field in x.drives}
+    return values
+
+
+def _standard_errors(
+    rng: np.random.Generator, degrees_of_freedom: float | None, draws: int
+) -> FloatArray:
+    """Draw errors in units of their standard uncertainty, shape (draws,)."""
+    if degrees_of_freedom is None:
+        return rng.standard_normal(draws)
+    return rng.standard_t(degrees_of_freedom, draws)
+
+
+def _allowed(field: str, values: FloatArray) -> FloatArray:
+    """Bring draws of a field of a strip back to the range of its kind."""
+    for quantity, allowed in RANGES.items():
+        if field.endswith(quantity):
+            return np.clip(values, allowed.low, allowed.high)
     return values
 
 

@@ -14,6 +14,8 @@ from deamat.core.arrays import FloatArray
 from deamat.core.errors import OutOfRange
 from deamat.core.flags import Flag as Flag  # one of the nouns, though declared there
 from deamat.core.kinds import (
+    COEFFICIENT,
+    CONDITIONS_KIND,
     COUNT,
     ID,
     INTERVAL,
@@ -431,9 +433,70 @@ class Law:
 
 
 @dataclass(frozen=True, slots=True)
+class JointFit:
+    """Values that are estimates of one fit, and err together.
+
+    Parameters
+    ----------
+    keys, campaign, conditions : which values
+    correlations : of their independent errors, row by row in the order of the keys `[1]`
+    why : what fit, in words
+    """
+
+    keys: tuple[str, ...]
+    campaign: str
+    conditions: Mapping[str, Condition]
+    correlations: tuple[tuple[float, ...], ...]
+    why: str
+
+    def holds(self, record: PropertyRecord) -> bool:
+        """Say whether a value is one of its estimates."""
+        return (
+            record.key in self.keys
+            and record.campaign == self.campaign
+            and record.conditions == self.conditions
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Correlation:
+    """Two values of a card that do not err independently of each other."""
+
+    ENTRY: ClassVar = Entry(
+        "correlation",
+        "correlations",
+        "Two values that do not err independently: to be drawn jointly where both are used.",
+    )
+
+    key: Annotated[str, PROPERTY_KEY, Mark.IN_FRONT, "Property key of the one."]
+    material: Annotated[str, Mark.OF_THE_CARD]
+    campaign: Annotated[str, ID, "Campaign of the one."]
+    conditions: Annotated[
+        Mapping[str, Condition],
+        CONDITIONS_KIND,
+        "Conditions that tell the one from the others of its key and campaign.",
+    ]
+    other_key: Annotated[str, PROPERTY_KEY, Mark.IN_FRONT, "Property key of the other."]
+    other_campaign: Annotated[str, ID]
+    other_conditions: Annotated[Mapping[str, Condition], CONDITIONS_KIND]
+    coefficient: Annotated[
+        float,
+        COEFFICIENT,
+        "Correlation of their errors, shared ones included.",
+    ]
+    why: Annotated[str, SAID, "The fit, the specimens or the calibrations that both rest on."]
+
+
+@dataclass(frozen=True, slots=True)
 class Summary:
-    """What a technique says of one material in one campaign."""
+    """What a technique says of one material in one campaign.
+
+    Parameters
+    ----------
+    fits : which of the records come of one fit
+    """
 
     records: tuple[PropertyRecord, ...]
     laws: tuple[Law, ...] = ()
     refusals: tuple[Refusal, ...] = ()
+    fits: tuple[JointFit, ...] = ()

@@ -18,7 +18,15 @@ from deamat.core.json_text import indented
 from deamat.core.kinds import CONDITIONS_KIND, ID, SAID, Kind
 from deamat.core.present import readable_record
 from deamat.core.quantity import Quantity
-from deamat.core.records import CalibrationRecord, Condition, Excluded, Law, PropertyRecord, Refusal
+from deamat.core.records import (
+    CalibrationRecord,
+    Condition,
+    Correlation,
+    Excluded,
+    Law,
+    PropertyRecord,
+    Refusal,
+)
 from deamat.core.schema import (
     After,
     Called,
@@ -98,6 +106,12 @@ class MaterialCard:
         tuple[CalibrationRecord, ...],
         Mark.IF_ANY,
         "Calibrations that the values rest on. Left out where none is declared.",
+    ] = ()
+    correlations: Annotated[
+        tuple[Correlation, ...],
+        Mark.IF_ANY,
+        "Pairs of values that do not err independently; a pair that is not listed does, or is of "
+        "one property under two conditions. Left out where there are none.",
     ] = ()
 
     def keys(self) -> tuple[str, ...]:
@@ -189,6 +203,7 @@ class MaterialCard:
             laws=_in_order(map(doc.canonical_law, self.laws)),
             refusals=tuple(sorted(self.refusals, key=_refusal_order)),
             excluded=tuple(sorted(self.excluded, key=_exclusion_order)),
+            correlations=tuple(sorted(self.correlations, key=_correlation_order)),
             calibrations=tuple(sorted(self.calibrations, key=lambda c: c.calibration)),
             campaigns=tuple(sorted(self.campaigns, key=lambda c: c.campaign)),
         )
@@ -277,6 +292,12 @@ def _in_order(entries: Iterable[E]) -> tuple[E, ...]:
 def _refusal_order(refusal: Refusal) -> tuple[str, str, str, str]:
     rest = doc.canonical_json(document_of(refusal))
     return refusal.key, refusal.campaign, refusal.specimen or "", rest
+
+
+def _correlation_order(pair: Correlation) -> tuple[str, ...]:
+    told = (pair.conditions, pair.other_conditions)
+    where = [doc.canonical_json(CONDITIONS_KIND.write(conditions)) for conditions in told]
+    return pair.key, pair.campaign, where[0], pair.other_key, pair.other_campaign, where[1]
 
 
 def _exclusion_order(excluded: Excluded) -> tuple[str, str, str]:

@@ -32,6 +32,7 @@ from deamat.core.records import (
 )
 from deamat.core.schema import document_of, fields_of
 from deamat.materials.card import MaterialCard
+from deamat.materials.correlation import partners
 from deamat.materials.database import Database
 from deamat.materials.document import Document
 from deamat.materials.present import credit_text, law_text, synthetic_lines, title
@@ -156,6 +157,9 @@ def _document(trace: Trace) -> Document:
         "property": _record_document(entry) if isinstance(entry, PropertyRecord) else None,
         "law": document_of(entry) if isinstance(entry, Law) else None,
         "refused": [{**document_of(r), "places": _refusal_places(r, card)} for r in trace.refusals],
+        "correlations": [document_of(pair) for _, _, pair in partners(card.correlations, entry)]
+        if isinstance(entry, PropertyRecord)
+        else [],
         "calibrations": [document_of(c) for c in _calibrations(entry, card)] if entry else [],
         "excluded": [document_of(left_out) for left_out in trace.excluded],
         "code": {"version": provenance.version, "digest": provenance.code},
@@ -189,6 +193,8 @@ def _lines(trace: Trace) -> Iterator[str]:
         yield from _budget_lines(entry)
     if entry is not None:
         yield from _calibration_lines(entry, card)
+    if isinstance(entry, PropertyRecord):
+        yield from _correlation_lines(entry, card)
     if trace.refusals:
         yield from ("", "Refused")
         for refusal in trace.refusals:
@@ -289,6 +295,20 @@ def _calibration_lines(entry: Entry, card: MaterialCard) -> Iterator[str]:
         ],
         "  ",
     )
+
+
+def _correlation_lines(record: PropertyRecord, card: MaterialCard) -> Iterator[str]:
+    rows = [
+        (
+            key,
+            readable_conditions(conditions) if conditions else "",
+            f"{pair.coefficient:+.2f}",
+            pair.why,
+        )
+        for key, conditions, pair in partners(card.correlations, record)
+    ]
+    if rows:
+        yield from ("", "Errs together with", *aligned(rows, "  "))
 
 
 def _origin_lines(origin: Origin, entry: Entry) -> Iterator[str]:

@@ -13,6 +13,7 @@ from deamat.core.json_text import indented
 from deamat.core.ledger import Failure, FileEntry, Provenance
 from deamat.core.records import CalibrationRecord
 from deamat.materials.card import Credit, MaterialCard
+from deamat.materials.correlation import correlations_of
 from deamat.materials.curves import write_curves
 from deamat.materials.database import write_database
 from deamat.run.boundary import FAILED, attempt
@@ -189,7 +190,8 @@ def _card(material: str, groups: Sequence[Group], run: RunContext) -> MaterialCa
         for c, i in ((c, infos[c]) for c in campaigns)
     )
     summaries = [g.summary for g in groups if g.summary]
-    origins = [o for s in summaries for r in s.records for o in r.origins]
+    records = tuple(r for s in summaries for r in s.records)
+    origins = [o for r in records for o in r.origins]
     origins += [o for s in summaries for law in s.laws for o in law.origins]
     named = {name for origin in origins for name in origin.calibrations}
     known = run.config.instruments.calibrations
@@ -197,12 +199,13 @@ def _card(material: str, groups: Sequence[Group], run: RunContext) -> MaterialCa
         material=material,
         name=run.config.name_of(material),
         synthetic=any(c.synthetic for c in credits_),
-        records=tuple(r for s in summaries for r in s.records),
+        records=records,
         laws=tuple(law for s in summaries for law in s.laws),
         refusals=tuple(r for s in summaries for r in s.refusals),
         campaigns=credits_,
         excluded=tuple(e for s in run.surveys for e in s.excluded if e.material == material),
         calibrations=tuple(_calibration(name, known[name]) for name in sorted(named)),
+        correlations=correlations_of(records, [fit for s in summaries for fit in s.fits]),
     )
 
 

@@ -17,6 +17,7 @@ from deamat.core.recording import Specimen
 from deamat.core.records import (
     CalibrationRecord,
     Condition,
+    Correlation,
     Excluded,
     Flag,
     Law,
@@ -312,6 +313,22 @@ cards = st.builds(
         ),
         max_size=3,
         unique_by=lambda e: e.place,
+    ).map(tuple),
+    correlations=st.lists(
+        st.builds(
+            Correlation,
+            key=st.sampled_from(sorted(PROPERTIES)),
+            material=st.just("gel-a"),
+            campaign=names,
+            conditions=st.fixed_dictionaries({}, optional=conditions_of),
+            other_key=st.sampled_from(sorted(PROPERTIES)),
+            other_campaign=names,
+            other_conditions=st.fixed_dictionaries({}, optional=conditions_of),
+            coefficient=st.floats(-1.0, 1.0),
+            why=names,
+        ),
+        max_size=2,
+        unique_by=lambda c: (c.key, c.campaign),
     ).map(tuple),
     calibrations=st.lists(
         st.builds(

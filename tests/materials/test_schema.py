@@ -11,7 +11,15 @@ from hypothesis import given, settings
 
 from deamat.core.properties import CONDITIONS, PROPERTIES
 from deamat.core.quantity import Contribution
-from deamat.core.records import CalibrationRecord, Excluded, Law, Origin, PropertyRecord, Refusal
+from deamat.core.records import (
+    CalibrationRecord,
+    Correlation,
+    Excluded,
+    Law,
+    Origin,
+    PropertyRecord,
+    Refusal,
+)
 from deamat.core.schema import entry_of, fields_of
 from deamat.materials.card import SCHEMA, Credit, MaterialCard
 from deamat.materials.json_schema import schema_text
@@ -45,7 +53,7 @@ def test_the_schema_knows_the_closed_tables() -> None:
 def test_every_object_of_the_schema_is_closed_and_complete() -> None:
     classes = (
         *(MaterialCard, Credit, PropertyRecord, Law, Refusal, Excluded, CalibrationRecord),
-        *(Origin, Contribution),
+        *(Origin, Contribution, Correlation),
     )
     closed = {entry_of(cls).name: cls for cls in classes}
     objects = {"card": _SCHEMA, **{n: d for n, d in _SCHEMA["$defs"].items() if "required" in d}}

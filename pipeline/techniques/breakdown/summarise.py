@@ -14,6 +14,7 @@ from deamat.core.quantity import Contribution, Quantity
 from deamat.core.records import (
     Detail,
     Flag,
+    JointFit,
     Measurement,
     PropertyRecord,
     Refusal,
@@ -21,7 +22,11 @@ from deamat.core.records import (
 )
 from deamat.core.technique import Context
 from deamat.core.units import from_si
+from deamat.estimators.weibull.fit import fit
 from deamat.estimators.weibull.intervals import P_SCALE, Inference, Interval, infer
+from deamat.estimators.weibull.joint import SCALE as SCALE_GRADIENT
+from deamat.estimators.weibull.joint import SHAPE as SHAPE_GRADIENT
+from deamat.estimators.weibull.joint import correlations, of_quantile
 from deamat.estimators.weibull.sample import MIN_DISTINCT, MIN_SPREAD
 from deamat.estimators.weibull.shape import unbiased_shape
 from deamat.techniques.breakdown.config import (
@@ -69,14 +74,36 @@ def summarise(
     Source: IEC 62539; Lawless, Statistical Models and Methods for Lifetime Data, chapter 5.
     """
     records: list[PropertyRecord] = []
+    fits: list[JointFit] = []
     refusals = [r for m in measurements for r in m.refusals]
     lost = sorted(m.specimen.id for m in measurements if not m.values)
     for sample in samples(measurements):
         try:
             records += _records(sample, lost, context.config)
+            fits.append(_joint(sample))
         except FitRefused as error:
             refusals += _refused(sample, error)
-    return Summary(tuple(records), refusals=tuple(refusals))
+    return Summary(tuple(records), refusals=tuple(refusals), fits=tuple(fits))
+
+
+def _joint(sample: Sample) -> JointFit:
+    """Say how the estimates of a sample's fit err together."""
+    estimates = {
+        STRENGTH: SCALE_GRADIENT,
+        SHAPE: SHAPE_GRADIENT,
+        UNBIASED: SHAPE_GRADIENT,
+        B10: of_quantile(0.1),
+        B1: of_quantile(0.01),
+    }
+    fitted = fit(sample.field_V_per_m, sample.censored)
+    matrix = correlations(fitted, sample.field_V_per_m, list(estimates.values()))
+    return JointFit(
+        keys=tuple(estimates),
+        campaign=sample.pairs[0][0].specimen.campaign,
+        conditions=sample.conditions,
+        correlations=tuple(tuple(float(f"{r:.6g}") for r in row) for row in matrix),
+        why=f"one Weibull fit of {fitted.n} specimens, {fitted.failures} of which failed",
+    )
 
 
 def _records(sample: Sample, lost: list[str], config: BreakdownConfig) -> list[PropertyRecord]:

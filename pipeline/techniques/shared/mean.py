@@ -103,7 +103,12 @@ def _record(
     if n == 1:
         budget = first.budget
     else:
-        scatter = Contribution("scatter between specimens", found.mean.u_independent, shared=False)
+        scatter = Contribution(
+            "scatter between specimens",
+            found.mean.u_independent,
+            shared=False,
+            degrees_of_freedom=found.scatter_dof,
+        )
         budget = (scatter, *shared)
     return PropertyRecord(
         key=first.key,
@@ -125,12 +130,18 @@ def _record(
 
 @dataclass(frozen=True, slots=True)
 class _Found:
-    """A mean, its interval, what kind of limit it is and how it was made."""
+    """A mean, its interval, what kind of limit it is and how it was made.
+
+    Parameters
+    ----------
+    scatter_dof : degrees of freedom of the scatter between the specimens
+    """
 
     mean: Mean
     ci95: tuple[float, float]
     bound: Bound
     method: str
+    scatter_dof: float
 
 
 def _mean(pairs: Sequence[Pair], u_shared: float) -> _Found:
@@ -144,12 +155,19 @@ def _mean(pairs: Sequence[Pair], u_shared: float) -> _Found:
         except FitRefused:
             at_least = mean_with_shared(values, own.quantity.u_independent, u_shared)
             ci95 = (at_least.value, math.inf)
-            return _Found(at_least, ci95, "lower", "mean, at least: unbroken ones at their limits,")
+            return _Found(
+                at_least,
+                ci95,
+                "lower",
+                "mean, at least: unbroken ones at their limits,",
+                len(pairs) - 1,
+            )
         how = f"mean, {limits.count(True)} unbroken ones as lower limits (maximum likelihood),"
-        return _Found(censored, positive_interval(censored), "exact", how)
+        exact = limits.count(False)
+        return _Found(censored, positive_interval(censored), "exact", how, exact - 1)
     mean = mean_with_shared(values, own.quantity.u_independent, u_shared, own.degrees_of_freedom)
     interval = mean.ci95 if min(values) < 0.0 else positive_interval(mean)
-    return _Found(mean, interval, "exact", "mean")
+    return _Found(mean, interval, "exact", "mean", len(pairs) - 1)
 
 
 def origin_of(measurement: Measurement[Result], value: MeasuredValue, technique: str) -> Origin:

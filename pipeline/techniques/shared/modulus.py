@@ -130,7 +130,12 @@ def slope_budget(line: Line, curve: StressStrain) -> tuple[Contribution, ...]:
     rounding = curve.stress_resolution_Pa / math.sqrt(12.0 * line.sum_squares_x)
     scatter = math.sqrt(max(line.standard_error**2 - rounding**2, 0.0))
     own = (
-        Contribution("scatter about the line, autocorrelated", scatter, shared=False),
+        Contribution(
+            "scatter about the line, autocorrelated",
+            scatter,
+            shared=False,
+            degrees_of_freedom=line.degrees_of_freedom,
+        ),
         Contribution("load cell resolution", rounding, shared=False),
         Contribution("machine compliance", line.slope**2 * curve.u_compliance_per_Pa, shared=True),
     )

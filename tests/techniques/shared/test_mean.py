@@ -149,6 +149,13 @@ def test_flags_of_specimens_are_said_once() -> None:
     assert record.flags == (Flag("toe", "1 of 2 specimens, such as s1: slope 5 kPa"),)
 
 
+def test_the_scatter_of_a_few_specimens_states_its_degrees_of_freedom() -> None:
+    record = only(*(measurement(f"s{i}", i, 1e5 + i) for i in range(2, 5)))
+    dof = {line.source: line.degrees_of_freedom for line in record.budget}
+    assert dof.pop("scatter between specimens") == 2
+    assert set(dof.values()) == {None}
+
+
 def test_rates_that_differ_by_height_only_are_one_condition() -> None:
     record = only(
         measurement("s1", 2, 1e5, {"rate_per_s": 0.0050}, speed=1e-4),
