@@ -201,6 +201,8 @@ def _points(mark: Points, place: Place) -> Iterator[str]:
             for end in (mark.low, mark.high)
         )
         for x, y, low, high in zip(xs, ys, lows, highs, strict=True):
+            if not np.isfinite(x + y):
+                continue
             if mark.sideways:
                 d = f"M{low:.1f} {y - 3:.1f}v6m0-3H{high:.1f}m0-3v6"
             else:

@@ -7,6 +7,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from deamat.core.chart import (
     Axis,
@@ -18,6 +20,7 @@ from deamat.core.chart import (
     Mark,
     Note,
     Points,
+    Spacing,
     Window,
 )  # fmt: skip
 from deamat.report.chart.page import MARK, MARK_MEANING, WIDTH_px, picture
@@ -139,3 +142,25 @@ def test_long_names_are_shortened_in_the_legend_and_no_text_leaves_the_page() ->
 def test_nothing_in_a_picture_is_loaded_from_elsewhere() -> None:
     text = picture(every_mark(), "all", True).decode()
     assert re.findall(r"https?://[^\"]*", text) == ["http://www.w3.org/2000/svg"]
+
+
+SAMPLES = st.lists(
+    st.floats(-1e60, 1e60) | st.just(float("nan")) | st.sampled_from([0.0, 1e-60, 1e9]), max_size=20
+)
+
+
+@given(SAMPLES, SAMPLES, st.sampled_from(["linear", "log"]), st.sampled_from(["linear", "log"]))
+def test_any_numbers_make_a_picture(
+    xs: list[float], ys: list[float], along: Spacing, upright: Spacing
+) -> None:
+    n = min(len(xs), len(ys))
+    x, y = np.array(xs[:n]), np.array(ys[:n])
+    marks: list[Mark] = [
+        Curves((Curve("a", x, y),)), Curves((Curve("b", x, y),), points=True), Line(x, y),
+        Points(x, y, low=y - 1.0, high=y + 1.0), Band(x, y, y + 1.0),
+    ]  # fmt: skip
+    shown = Chart(Axis("x", along), Axis("y", upright), tuple(marks))
+    root = drawn(shown)
+    for path in root.iter(f"{SVG}path"):
+        assert "nan" not in (path.get("d") or "")
+        assert "inf" not in (path.get("d") or "")
