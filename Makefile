@@ -48,9 +48,10 @@ docs: $(VENV)/.dev  ## write docs/benchmarks.md, reading-speed.md and the pictur
 	@$(BIN)/python -m benchmarks.chart --docs && $(BIN)/python -m benchmarks.stability --docs
 	@$(BIN)/python -m benchmarks.read_and_fit --docs
 
-schema: $(VENV)/.runtime  ## write docs/card.schema.json and docs/registers/ from the code
+schema: $(VENV)/.runtime  ## write docs/card.schema.json, docs/registers/ and the table of forms from the code
 	@$(BIN)/python -m deamat.materials.json_schema > docs/card.schema.json
 	@$(BIN)/python -m deamat.run.register_schemas docs/registers
+	@$(BIN)/python -m deamat.formats.forms_table docs/formats.md
 
 clean:  ## forget everything that can be made again
 	rm -rf $(VENV) && cd processed && find . ! -name . ! -name README.md -prune -exec rm -rf {} +

@@ -52,4 +52,13 @@ def _read(file: RawFile) -> Recording:
     return read_table(file, layout, _READER, {})
 
 
-FORMAT = Format(_READER.name, "Anton Paar flow curve", _recognises, _read, ";", tabular=True)
+FORMAT = Format(
+    _READER.name,
+    "Anton Paar flow curve",
+    _recognises,
+    _read,
+    ";",
+    tabular=True,
+    looks="semicolon, decimal comma, a row of units",
+    seen="imewei/rheojax, flow curves of ethylcellulose",
+)

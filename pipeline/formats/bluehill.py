@@ -64,4 +64,5 @@ FORMAT = Format(
     _READER.dialect.delimiter,
     MECHANICS,
     tabular=True,
+    looks="units row, quoted numbers with thousands commas",
 )

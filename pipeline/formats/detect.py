@@ -49,12 +49,9 @@ _BINARY = {
     b"\x1f\x8b\x08\x00": _COMPRESSED,
     b"\x1f\x8b\x08\x08": _COMPRESSED,
 }
-_WITHOUT_HEAD = (
-    plain.FORMAT,
-    tdms.FORMAT,
-    workbook.FORMAT,
-)  # known by their first bytes, or by none
-KNOWN_FORMS = tuple(form.name for form in (*FORMATS, *_WITHOUT_HEAD))
+# those of the list, and those that are known by their first bytes or by none
+EVERY_FORM = (*FORMATS, plain.FORMAT, tdms.FORMAT, workbook.FORMAT)
+KNOWN_FORMS = tuple(form.name for form in EVERY_FORM)
 _DELIMITERS = {"tab": "\t", "semicolon": ";", "comma": ","}
 
 
@@ -175,7 +172,7 @@ def by_name(name: str, exports: Sequence[Export] = ()) -> Format:
     ------
     ConfigError : there is no such format; names the nearest one
     """
-    forms = (*FORMATS, *_WITHOUT_HEAD, *map(format_of, exports))
+    forms = (*EVERY_FORM, *map(format_of, exports))
     for form in forms:
         if form.name == name:
             return form

@@ -124,4 +124,11 @@ def _settings(lines: Sequence[str]) -> list[tuple[int, str, str]]:
     return found
 
 
-FORMAT = Format(_NAME, "Keysight E4980A sweep, logged on a PC", _recognises, _read, ",")
+FORMAT = Format(
+    _NAME,
+    "Keysight E4980A sweep, logged on a PC",
+    _recognises,
+    _read,
+    ",",
+    looks="`Frequency,Primary,Secondary,Status`",
+)

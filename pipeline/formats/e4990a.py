@@ -61,4 +61,13 @@ def _read(file: RawFile) -> Recording:
     return read_rewritten(file, lines, _NAME)
 
 
-FORMAT = Format(_NAME, "Keysight E4990A trace", _recognises, _read, ",", ("permittivity",))
+FORMAT = Format(
+    _NAME,
+    "Keysight E4990A trace",
+    _recognises,
+    _read,
+    ",",
+    ("permittivity",),
+    looks="`!Agilent`, `BEGIN CH1_DATA`, `R(Ohm)-data`, `END`",
+    seen="its `!`, `BEGIN`, `END` frame: public scripts that read Keysight analysers",
+)

@@ -72,4 +72,13 @@ def _read(file: RawFile) -> Recording:
     return replace(recording, flags=(*recording.flags, flag))
 
 
-FORMAT = Format(_READER.name, "tab-separated flow curve", _recognises, _read, "\t", tabular=True)
+FORMAT = Format(
+    _READER.name,
+    "tab-separated flow curve",
+    _recognises,
+    _read,
+    "\t",
+    tabular=True,
+    looks="rate and viscosity or stress, units beside the labels",
+    seen="TimothySchmid/Additional_data_PhD_thesis",
+)

@@ -25,6 +25,8 @@ class Format:
     delimiter : of its tables: where the head holds none, nobody needs to ask `recognises`
     techniques : for which it is written, empty for any; elsewhere its files are plain tables
     tabular : its files are tables with labels and units: one that it refuses may be a plain table
+    looks : by what people know it, for the table of forms
+    seen : public file, script or manual that it was written from, as far as there is one
     """
 
     name: str
@@ -34,3 +36,5 @@ class Format:
     delimiter: str = ""
     techniques: tuple[str, ...] = ()
     tabular: bool = False
+    looks: str = ""
+    seen: str = ""

@@ -186,4 +186,10 @@ def _named(
     return columns
 
 
-FORMAT = Format(_NAME, "high-voltage ramp, DAQ log or plain table", _recognises, _read)
+FORMAT = Format(
+    _NAME,
+    "high-voltage ramp, DAQ log or plain table",
+    _recognises,
+    _read,
+    looks="channel lines with their ratios, or `time_s` with `voltage_kV`",
+)

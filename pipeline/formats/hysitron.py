@@ -106,4 +106,12 @@ def _read(file: RawFile) -> Recording:
     return recording
 
 
-FORMAT = Format(_READER.name, "Hysitron TriboScan text", _recognises, _read, "\t")
+FORMAT = Format(
+    _READER.name,
+    "Hysitron TriboScan text",
+    _recognises,
+    _read,
+    "\t",
+    looks="`Number of Points = `, `Depth (nm)`, blank lines between segments",
+    seen="micromechanics/main",
+)

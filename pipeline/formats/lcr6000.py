@@ -106,4 +106,11 @@ def _read(file: RawFile) -> Recording:
     return read_sweep(file, sweep, metadata, _NAME)
 
 
-FORMAT = Format(_NAME, "GW Instek LCR-6000, PC-logged replies", _recognises, _read, ",")
+FORMAT = Format(
+    _NAME,
+    "GW Instek LCR-6000, PC-logged replies",
+    _recognises,
+    _read,
+    ",",
+    looks="`# FUNC? => Cp-D`, then frequency, primary, secondary, status",
+)

@@ -190,4 +190,11 @@ def _remarks(lines: Sequence[str]) -> dict[str, str]:
     return kept
 
 
-FORMAT = Format(_NAME, "LCR sweep as a plain table", _recognises, _read, tabular=True)
+FORMAT = Format(
+    _NAME,
+    "LCR sweep as a plain table",
+    _recognises,
+    _read,
+    tabular=True,
+    looks="`frequency_Hz,Cp_F,D` and its sisters",
+)

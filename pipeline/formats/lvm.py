@@ -116,4 +116,11 @@ def _insist_on_samples(file: RawFile, said: dict[str, list[str]], rows: int, lin
         )  # fmt: skip
 
 
-FORMAT = Format(_NAME, "LabVIEW measurement, text", _recognises, _read)
+FORMAT = Format(
+    _NAME,
+    "LabVIEW measurement, text",
+    _recognises,
+    _read,
+    looks="`***End_of_Header***`, `Y_Unit_Label`, `X_Value`",
+    seen="public scripts and files of NI LabVIEW text",
+)

@@ -73,4 +73,5 @@ FORMAT = Format(
     _recognises,
     _read,
     _READER.dialect.delimiter,
+    looks="tab, `Units: N`, `Travel Unit: mm`",
 )

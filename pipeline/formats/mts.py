@@ -67,4 +67,5 @@ FORMAT = Format(
     _READER.dialect.delimiter,
     MECHANICS,
     tabular=True,
+    looks="tab, byte order mark, kN",
 )

@@ -107,4 +107,10 @@ def _reading(file: RawFile, at: int, line: str) -> Reading:
     return Reading(at, stamp.strip(), numbers)
 
 
-FORMAT = Format(_NAME, "NDJ-8S serial lines, PC-stamped", _recognises, _read)
+FORMAT = Format(
+    _NAME,
+    "NDJ-8S serial lines, PC-stamped",
+    _recognises,
+    _read,
+    looks="stamp, tab, `3#30 RPM  1925 48.1  22.0`",
+)

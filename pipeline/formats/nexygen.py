@@ -57,4 +57,5 @@ FORMAT = Format(
     _read,
     _READER.dialect.delimiter,
     tabular=True,
+    looks="UTF-16, tab, `Machine Extension (mm)`",
 )

@@ -102,6 +102,12 @@ def _cell(file: RawFile, line: str, number: int) -> dict[str, str]:
 
 
 FORMAT = Format(
-    _NAME, "Novocontrol WinDETA text", _recognises, _read, "\t",
+    _NAME,
+    "Novocontrol WinDETA text",
+    _recognises,
+    _read,
+    "\t",
     ("permittivity",),
-)  # fmt: skip
+    looks="a line `Diameter[mm] ... Thickness[mm] ...`, then `Freq. [Hz]`, `Eps'`, `Eps''`",
+    seen="files of the public repository quirin053/novocontrol_toolbox",
+)

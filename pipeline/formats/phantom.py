@@ -65,4 +65,6 @@ FORMAT = Format(
     _READER.dialect.delimiter,
     MECHANICS,
     tabular=True,
+    looks="comma, below a header of `label: value;` lines",
+    seen="Dawood et al. 2026, phantoms of Ecoflex, CC BY 4.0",
 )

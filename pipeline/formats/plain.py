@@ -71,4 +71,11 @@ def form_of(file: RawFile) -> Format:
     return replace(FORMAT, read=read)
 
 
-FORMAT = Format("plain", "any table with labels and units", lambda _: False, _read)
+FORMAT = Format(
+    "plain",
+    "any table with labels and units",
+    lambda _: False,
+    _read,
+    looks="see below",
+    seen="each label in `vocabulary.toml`",
+)

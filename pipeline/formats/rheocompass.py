@@ -145,4 +145,12 @@ def _notes(lines: list[str]) -> dict[str, str]:
     return kept
 
 
-FORMAT = Format(_NAME, "Anton Paar RheoCompass interval", _recognises, _read, "\t")
+FORMAT = Format(
+    _NAME,
+    "Anton Paar RheoCompass interval",
+    _recognises,
+    _read,
+    "\t",
+    looks="UTF-16, tab, three header rows",
+    seen="Mareike-99/rheocem2024_public",
+)

@@ -76,4 +76,11 @@ def _read(file: RawFile) -> Recording:
     return long_recording(file, columns, samples, lines, _NAME, {}, units)
 
 
-FORMAT = Format(_NAME, "rheodata collection", _recognises, _read)
+FORMAT = Format(
+    _NAME,
+    "rheodata collection",
+    _recognises,
+    _read,
+    looks="`sample_id,shear_rate_1/s,stress_Pa`",
+    seen="PyPI rheopy-rheodata",
+)

@@ -71,4 +71,11 @@ def _row(file: RawFile, at: int, line: str, number: int, start: float, increment
     return f"{start + number * increment!r}{comma}{rest.removesuffix(',')}"
 
 
-FORMAT = Format(_NAME, "Rigol oscilloscope", _recognises, _read)
+FORMAT = Format(
+    _NAME,
+    "Rigol oscilloscope",
+    _recognises,
+    _read,
+    looks="`X,CH1,Start,Increment,`, one channel",
+    seen="public scripts that read the DS1000Z",
+)

@@ -110,4 +110,13 @@ def _notes(lines: list[str]) -> dict[str, str]:
     return kept
 
 
-FORMAT = Format(_NAME, "flow curves side by side, % header", _recognises, _read, "\t", tabular=True)
+FORMAT = Format(
+    _NAME,
+    "flow curves side by side, % header",
+    _recognises,
+    _read,
+    "\t",
+    tabular=True,
+    looks="names of the samples above, rate and stress or viscosity for each",
+    seen="TimothySchmid/Additional_data_PhD_thesis",
+)

@@ -62,4 +62,6 @@ FORMAT = Format(
     _READER.dialect.delimiter,
     MECHANICS,
     tabular=True,
+    looks="semicolon, below a `PARAMETER;INFO;URL` header",
+    seen="doi 10.1089/soro.2019.0115",
 )

@@ -205,4 +205,11 @@ def _warnings() -> Iterator[list[str]]:
             logger.handlers, logger.propagate = handlers, propagate
 
 
-FORMAT = Format("tdms", "LabVIEW measurement, binary", lambda _: False, _read)
+FORMAT = Format(
+    "tdms",
+    "LabVIEW measurement, binary",
+    lambda _: False,
+    _read,
+    looks="groups of channels with `unit_string` and `wf_increment`",
+    seen="NI's description of TDMS; npTDMS",
+)

@@ -65,4 +65,12 @@ def _read(file: RawFile) -> Recording:
     return replace(recording, metadata={**recording.metadata, **said})
 
 
-FORMAT = Format(_NAME, "Tektronix oscilloscope", _recognises, _read, ",")
+FORMAT = Format(
+    _NAME,
+    "Tektronix oscilloscope",
+    _recognises,
+    _read,
+    ",",
+    looks="header beside the rows, `Record Length,`",
+    seen="TDS2000, as saved",
+)

@@ -223,4 +223,10 @@ def _elapsed(file: RawFile, readings: Sequence[Reading], labels: Sequence[str]) 
     return times
 
 
-FORMAT = Format(_NAME, "plain CSV of viscosity against time", _recognises, _read)
+FORMAT = Format(
+    _NAME,
+    "plain CSV of viscosity against time",
+    _recognises,
+    _read,
+    looks="`time_h,rotor,speed_rpm,viscosity_mPas,torque_percent`",
+)

@@ -277,4 +277,11 @@ def _hidden(name: str, marks: Marks, rows: range) -> tuple[Flag, ...]:
     return (Flag("hidden-rows", f"{hidden} rows of sheet {name} are {why}; all were read"),)
 
 
-FORMAT = Format("workbook", "Excel or OpenDocument workbook", lambda _: False, _read)
+FORMAT = Format(
+    "workbook",
+    "Excel or OpenDocument workbook",
+    lambda _: False,
+    _read,
+    looks="`.xlsx` or `.ods`: the one sheet with a table",
+    seen="python-calamine",
+)

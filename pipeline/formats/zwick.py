@@ -92,4 +92,5 @@ FORMAT = Format(
     _read,
     _READER.dialect.delimiter,
     tabular=True,
+    looks="quoted summary lines, then a table with three-digit exponents",
 )

@@ -206,3 +206,10 @@ def test_two_techniques_that_make_the_same_of_a_file_are_named_together(folder: 
     said = text(look(put(folder, "a.csv", CURVE)))
     assert "  compression or tension\n" in said
     assert "fill in  width_mm, thickness_um, gauge_length_mm for tension" in said
+
+
+def test_channels_of_a_recorder_may_be_named_by_options(folder: Path) -> None:
+    path = put(folder, "r.csv", "time_s;CH1 (V);CH2 (V)\n0;0;1\n1;1;2\n2;2;3\n3;3;4\n")
+    assert "which column is the voltage?" in look(path, "breakdown").faults[0]
+    checked = look(path, "breakdown", voltage_channel="CH2", probe_ratio="1000")
+    assert checked.columns[1].greatest == 4000.0

@@ -12,13 +12,14 @@ import numpy as np
 from pydantic import BaseModel
 
 from deamat.core.campaign import CAMPAIGN_FILE, MANIFEST_FILE
+from deamat.core.channels import CHANNEL_COLUMNS, channels_of
 from deamat.core.config import Config, Exclusions, load_config
 from deamat.core.errors import ConfigError, RawFileError
 from deamat.core.instruments import Instruments
 from deamat.core.ledger import Failure
 from deamat.core.recording import Recording
 from deamat.core.register import ENCODING, REGISTER_FILES, SHEET, split_sheet
-from deamat.formats.detect import KNOWN_FORMS, by_name, detect, is_binary
+from deamat.formats.detect import KNOWN_FORMS, by_name, detect, insist_on_channels, is_binary
 from deamat.formats.exports import load_exports
 from deamat.formats.format import Format
 from deamat.formats.rawfile import RawFile, read_raw
@@ -27,7 +28,7 @@ from deamat.run.boundary import attempt
 from deamat.run.check.found import Checked, Column
 from deamat.run.check.nearest import nearest_form, table_found
 from deamat.run.check.reading import Asked, reading_of
-from deamat.run.check.row import Place, place_of, registered
+from deamat.run.check.row import Place, of_options, place_of, registered
 from deamat.run.recognise import recordings_of
 from deamat.techniques import TECHNIQUES
 
@@ -104,10 +105,16 @@ def _read(file: RawFile, asked: Asked, place: Place, config: Config) -> Recordin
     rows = registered(place, TECHNIQUES[file.technique], config) if place.technique else ()
     named = asked.format or next((row.format for row in rows if row.format), None)
     if rows:
-        said = rows[0].notes
-        within = file.place or said.get(SHEET, "")
-        file = replace(file, place=within, declared=said.get(ENCODING, ""))
-    return _form_of(file, named, asked).read(file)
+        notes = rows[0].notes
+        within = file.place or notes.get(SHEET, "")
+        file = replace(file, place=within, declared=notes.get(ENCODING, ""))
+    said = {name: cell for name, cell in asked.columns.items() if name in CHANNEL_COLUMNS}
+    row = of_options(said, TECHNIQUES[file.technique], config) if said else next(iter(rows), None)
+    if row is not None:
+        file = replace(file, channels=channels_of(row))
+    recording = _form_of(file, named, asked).read(file)
+    insist_on_channels(file, recording)
+    return recording
 
 
 def _form_of(file: RawFile, named: str | None, asked: Asked) -> Format:
