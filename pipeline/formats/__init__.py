@@ -38,6 +38,7 @@ FORMATS: tuple[Format, ...] = tuple(
         "schmid",
         "soro",
         "tektronix",
+        "trios_json",
         "viscometer_csv",
         "zwick",
     )

@@ -221,6 +221,8 @@ def _side_by_side(labels: Sequence[str]) -> list[str]:
     first = next((label for label in labels if label and labels.count(label) > 1), "")
     starts = [at for at, label in enumerate(labels) if label == first]
     groups = []
+    if not starts:
+        return []
     for start, end in zip(starts, [*starts[1:], len(labels)], strict=True):
         while end > start and not labels[end - 1]:
             end -= 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import json
 import re
 from collections.abc import Iterable
 
@@ -18,6 +19,7 @@ from tests.formats.samples import BY_NAME
 from tests.formats.test_flow import ANTON_PAAR, COMPASS, RHEODATA, SCHMID, TAB, utf16
 from tests.formats.test_rewritten import FILES
 from tests.formats.test_viscometer import CSV, LOG
+from tests.formats.trios import document, rows
 
 LCR = ROOT / "tests" / "data" / "lcr"
 STAMPS = ("2022-03-01T20:30:00", "2022-03-01T20:30:00+01:00", "20:30:00")
@@ -68,6 +70,7 @@ GOOD: dict[str, list[bytes]] = {
     "lcr_csv": plain_sweeps(),
     **{name: [text.encode()] for name, text in FILES.items()},
     "novocontrol": computed(),
+    "trios_json": [json.dumps(document(rows("a")), indent=1).encode()],
     **{name: [sample.data] for name, sample in BY_NAME.items()},
 }
 
