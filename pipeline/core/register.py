@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from deamat.core.dates import read_date
@@ -91,6 +91,7 @@ class Register:
 
     specimens: tuple[Specimen, ...]
     errors: tuple[tuple[str | None, RawFileError], ...]  # (file the bad row names, why)
+    left_out: tuple[Specimen, ...] = ()  # bad rows whose faults do not matter
 
 
 def read_register(
@@ -102,6 +103,7 @@ def read_register(
     gauges: Mapping[str, Gauge],
     form: RegisterForm = SPECIMENS,
     spellings: Spellings | None = None,
+    left_out: Collection[str] = (),
 ) -> Register:
     """Read a register's bytes into specimens.
 
@@ -112,6 +114,7 @@ def read_register(
     gauges : SI name without unit (`diameter`) to the gauge that read it
     form : what the technique declares of its register
     spellings : of the names in the registers read before
+    left_out : ids of rows whose faults do not matter
 
     Raises
     ------
@@ -132,16 +135,22 @@ def read_register(
     spellings = Spellings() if spellings is None else spellings
     specimens: list[Specimen] = []
     errors: list[tuple[str | None, RawFileError]] = []
+    faulty: list[Specimen] = []
     seen: dict[str, int] = {}
     for line, row in table.rows:
         try:
             specimen = reader.specimen(row, line)
             reader.spelt_once(specimen, seen, spellings)
         except RawFileError as error:
-            errors.append((reader.named_file(row), error))
+            named = reader.named(row, line)
+            if named.id in left_out:
+                faulty.append(named)
+            else:
+                errors.append((named.file, error))
             continue
         specimens.append(specimen)
-    return Register(() if form.whole and errors else tuple(specimens), tuple(errors))
+    sound = () if form.whole and errors else tuple(specimens)
+    return Register(sound, tuple(errors), tuple(faulty))
 
 
 @dataclass
@@ -203,7 +212,7 @@ class _Rows:
         if sheet:
             notes[SHEET] = sheet
         return Specimen(
-            id=" ".join(cells[column] for column in self.identity if cells.get(column)),
+            id=self._id(cells),
             material=cells["material"],
             campaign=self.campaign,
             technique=self.technique,
@@ -280,12 +289,17 @@ class _Rows:
                 raise RawFileError(self.path, reason, line, at, text, hint)
             self.sound.add((name, text))
 
-    def named_file(self, row: list[str]) -> str | None:
-        """The file that a bad row names, as far as it can be told."""
-        if "file" not in self.header or len(row) <= self.header.index("file"):
-            return None
-        file, _ = split_sheet(row[self.header.index("file")].strip())
-        return self._below(file) if file else None
+    def named(self, row: list[str], line: int) -> Specimen:
+        """What a bad row names, as far as it can be told, without a number or a condition."""
+        cells = {name: cell.strip() for name, cell in zip(self.header, row, strict=False)}
+        file, _ = split_sheet(cells.get("file", ""))
+        return Specimen(
+            self._id(cells), cells.get("material", ""), self.campaign, self.technique,
+            self._below(file) if file else None, None, {}, {}, {}, self.path, line,
+        )  # fmt: skip
+
+    def _id(self, cells: Mapping[str, str]) -> str:
+        return " ".join(cells[column] for column in self.identity if cells.get(column))
 
     def _below(self, file: str) -> str:
         return f"{self.path.rpartition('/')[0]}/{file}"

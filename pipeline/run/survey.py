@@ -180,11 +180,14 @@ def _register(
                 )
         return
     form = techniques[name].register
+    reasons = {exclusion.target: exclusion.reason for exclusion in config.exclusions.exclude}
+    mine = f"{folder.name}/{name}/"
+    named = {target.removeprefix(mine) for target in reasons if target.startswith(mine)}
     try:
         _is_the_register(path, form, name, result)
         register = read_register(
             data, path, folder.name, name, techniques[name].required, config.instruments.gauges,
-            form, spellings,
+            form, spellings, named,
         )  # fmt: skip
     except RawFileError as error:
         _reject(result, error)
@@ -197,8 +200,7 @@ def _register(
         return
     owners: Owners = {}
     slips = list(register.errors)
-    reasons = {exclusion.target: exclusion.reason for exclusion in config.exclusions.exclude}
-    left_out: list[Excluded] = []
+    left_out = [_excluded(row, reasons[row.place]) for row in register.left_out]
     for specimen in register.specimens:
         why = reasons.get(specimen.place, reasons.get(specimen.file or ""))
         if why is not None:

@@ -100,6 +100,27 @@ def test_a_file_that_is_not_there_can_be_left_out(folders: Folders) -> None:
 
 
 @pytest.mark.parametrize(
+    "register_file", ["compression/specimens.csv", "handling/observations.csv"]
+)
+def test_the_faults_of_a_row_that_is_left_out_do_not_matter(
+    folders: Folders, register_file: str
+) -> None:
+    rows = [r for r in twin_rows(register_file) if r["material"] == MATERIALS[0]][:6]
+    bad = dict(rows[0], **({"height_mm": "tall"} if "file" in rows[0] else {"time_h": "late"}))
+    write_campaign([*rows[1:], bad], folders.raw / "other", register_file)
+    register(folders.raw, "other", accept_all=True)
+    assert run(folders)["exit_code"] == 1
+    names = ("material", "batch", "bed_temperature_C", "time_h", "line")
+    row = bad["specimen"] if "file" in bad else " ".join(bad[name] for name in names)
+    technique = register_file.partition("/")[0]
+    document = exclude(folders, specimen=f"other/{technique}/{row}")
+    assert (document["exit_code"], document["rejected"]) == (0, [])
+    with open_database(folders.processed) as database:
+        (left_out,) = database[MATERIALS[0]].excluded
+    assert (left_out.specimen, left_out.register_line) == (row, len(rows) + 1)
+
+
+@pytest.mark.parametrize(
     ("target", "nearest"),
     [
         ({"path": "demo/compression/specimen.csv"}, "'demo/compression/specimens.csv'"),
