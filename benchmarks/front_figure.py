@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import LogFormatter, ScalarFormatter
+from matplotlib.ticker import LogFormatter, LogLocator, NullFormatter, ScalarFormatter
 from matplotlib.transforms import ScaledTranslation
 
 from benchmarks.families.family import Family, number
@@ -93,6 +93,10 @@ def _points(figure: Figure, axes: Axes, family: Family, rows: Sequence[Row]) -> 
     if worst < 1e3 * low:
         axes.yaxis.set_major_formatter(ScalarFormatter())
         axes.yaxis.set_minor_formatter(LogFormatter(minor_thresholds=(2, 0.7)))
+    if max(every) < 1e2 * min(every):
+        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.xaxis.set_major_formatter(ScalarFormatter())
+        axes.xaxis.set_minor_formatter(NullFormatter())
     axes.tick_params(axis="both", which="minor", labelsize=7.0)
     handles = [
         Line2D([], [], color=c, marker=m, linestyle="", markersize=6, label=label)
