@@ -8,7 +8,7 @@ QUICK := tests/core tests/formats tests/materials tests/actuator tests/run/test_
   tests/test_cli_design.py tests/test_public.py
 
 .DEFAULT_GOAL := help
-.PHONY: all paper test quick check shell bench chart stability mutants fuzz docs schema help clean
+.PHONY: all paper test quick check shell bench chart stability mutants situations fuzz docs schema help clean
 
 all: $(VENV)/.runtime  ## reprocess raw/ into processed/: read, fit, refuse, publish cards
 	@$(BIN)/deamat all
@@ -40,6 +40,9 @@ stability: $(VENV)/.dev  ## map where estimators hold, flag, refuse or are silen
 mutants: $(VENV)/.dev  ## put 150 slips into each of three packages: how many do the tests notice?
 	@$(BIN)/python -m benchmarks.mutation estimators materials
 	@$(BIN)/python -m benchmarks.mutation run --tests tests/run tests/test_cli.py tests/test_cli_design.py
+
+situations: $(VENV)/.dev  ## write docs/situations.md anew: how often a wrong number passes in silence (simulated)
+	@$(BIN)/python -m benchmarks.situations --count 200 --docs
 
 fuzz: $(VENV)/.dev  ## spoil COUNT=20000 good files and registers: crash, hang, silence? (goes on where it stopped)
 	@$(BIN)/python -m benchmarks.fuzz --count $(COUNT)

@@ -105,7 +105,7 @@ def _false_alarms(cells: Cells) -> list[str]:
     """Count the flags on materials without a fault, by technique and by flag."""
     clean: dict[str, list[Judged]] = defaultdict(list)
     for (name, severity), judged in cells.items():
-        if severity == 0.0:
+        if severity == 0.0 and SITUATIONS[name].sound:
             clean[SITUATIONS[name].technique] += judged
     lines = ["## False alarms on clean data"]
     lines += [

@@ -51,6 +51,7 @@ class Situation:
     severities : three of them, which shift the naive value by about 3, 10 and 30 %; fewer where
         the situation has no such degrees
     make : a severity (0: no fault) to a material
+    sound : at severity 0 nothing is wrong; False where another fault is left, which may be flagged
     undetectable : severity to the reason why the data cannot show it, for cells known to be silent
     """
 
@@ -64,3 +65,4 @@ class Situation:
     severities: tuple[float, ...]
     make: Callable[[Generator, float], Made]
     undetectable: Mapping[float, str] = field(default_factory=dict)
+    sound: bool = True

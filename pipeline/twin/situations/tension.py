@@ -240,7 +240,7 @@ SITUATIONS = (
         "Counted from where a hinge fits best; how much steeper the curve becomes later is in the "
         "uncertainty, and flagged.",
         ("toe",), "strain over which it becomes taut", (0.0006, 0.0022, 0.0095),
-        lambda rng, severity: _made(_COMPENSATED, _rounded, rng, severity or _SHARP),
+        lambda rng, severity: _made(_COMPENSATED, _rounded, rng, severity or _SHARP), sound=False,
     ),
     _situation(
         "tension-untared", _STRENGTH,
