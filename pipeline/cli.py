@@ -26,6 +26,7 @@ from deamat.commands.options import (
     folders_options,
 )
 from deamat.commands.register import register
+from deamat.commands.watch import watch
 from deamat.core.errors import PipelineError, RawFileError
 from deamat.run.boundary import attempt
 
@@ -266,7 +267,7 @@ def simulate(
     click.echo(f"SYNTHETIC campaign {written}, its truth {truth}")
 
 
-for command in (add, check, exclude, init, learn, register):
+for command in (add, check, exclude, init, learn, register, watch):
     cli.add_command(command)
 
 

@@ -11,10 +11,12 @@ from typing import Any
 
 from deamat.core.errors import ConfigError
 from deamat.run.environment import installed
-from deamat.run.folders import Folders, look
+from deamat.run.folders import Folders, Stat, look
 from deamat.run.host import cpu_count
 from deamat.run.published import intact
 from deamat.run.state import STATE_FILE, DamagedState, State, set_state_aside
+
+Hold = Callable[[dict[str, Stat]], dict[str, Stat]]
 
 
 def run_all(
@@ -22,6 +24,7 @@ def run_all(
     workers: int | None,
     progress: Callable[[str, int, int], None],
     verify: bool = False,
+    hold: Hold = dict,
 ) -> dict[str, Any]:
     """Bring `processed/` up to date and give the document that `summary.text` prints.
 
@@ -30,6 +33,7 @@ def run_all(
     workers : processes at most; None for one per core
     progress : told (stage, done, total) as the run goes on
     verify : hash every input again, whatever its time of change
+    hold : given every input there is, returns them as the run may see them
 
     Raises
     ------
@@ -39,10 +43,10 @@ def run_all(
         if not folder.is_dir():
             raise ConfigError(f"no folder {folder}; give one with {what}")
     try:
-        return _run(folders, workers, progress, verify)
+        return _run(folders, workers, progress, verify, hold)
     except DamagedState as error:
         aside = set_state_aside(folders.processed, error)
-        document = _run(folders, workers, progress, verify)
+        document = _run(folders, workers, progress, verify, hold)
         return {**document, "warnings": [aside, *document["warnings"]]}
 
 
@@ -51,9 +55,10 @@ def _run(
     workers: int | None,
     progress: Callable[[str, int, int], None],
     verify: bool,
+    hold: Hold,
 ) -> dict[str, Any]:
     with State(folders.processed) as state:
-        seen = look(folders)
+        seen = hold(look(folders))
         document: dict[str, Any] = json.loads(state.read_note("document") or "{}")
         places = json.dumps([str(folders.raw.resolve()), str(folders.config.resolve())])
         if (
