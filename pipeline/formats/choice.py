@@ -95,7 +95,8 @@ def choose(heading: Heading, technique: str, channels: Channels = NO_CHANNELS) -
     missing = _missing_channels(heading, channels)
     if missing:
         return Choice(heading, technique, (), (), missing, len(columns))
-    columns = [_in_its_role(column, channels) for column in columns]
+    if channels.labels:
+        columns = [_in_its_role(column, channels) for column in columns]
     labelled = len([column for column in columns if column.means])
     twins: dict[str, str] = {}
     known = {

@@ -116,6 +116,20 @@ def _read(file: RawFile) -> Recording:
     return _recording(file, *found[0])
 
 
+def sheets_with_a_table(file: RawFile) -> list[str]:
+    """Name the sheets that hold a table with what the technique needs.
+
+    Raises
+    ------
+    RawFileError : a workbook that cannot be read
+    """
+    return [
+        name
+        for name, rows, marks in _sheets(file)
+        if _choice(file, _head(rows), marks)[0] is not None
+    ]
+
+
 def _refused(file: RawFile, nearest: tuple[str, Choice] | None) -> RawFileError:
     error = refused(file, nearest[1] if nearest else None)
     hint = error.hint or "one sheet must hold a row of labels with their units, and numbers below"

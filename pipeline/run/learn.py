@@ -285,9 +285,11 @@ def _which(table: Table, quantity: str) -> Question:
         for at, label in enumerate(table.labels)
         if label
     )
+    flag = f"--column 'LABEL={quantity}:UNIT'"
     return Question(
         f"which column is the {quantity_in_words(quantity)}? {shown}",
-        f"--column 'LABEL={quantity}:UNIT'", "column", quantity, choices=choices,
+        f"{flag} (or --interval SECONDS)" if quantity == "time_s" else flag,
+        "column", quantity, choices=choices,
     )  # fmt: skip
 
 

@@ -14,6 +14,7 @@ from deamat.run.check import Asked, Checked, check_files
 from deamat.run.check.found import Axis, Curve
 from deamat.run.check.preview import preview
 from deamat.run.check.text import text
+from tests.formats.workbooks import Rows, xlsx
 
 CYLINDER = {"diameter_mm": "28.6", "height_mm": "12.5"}
 STIFFNESS_N_per_m = 5000.0
@@ -213,3 +214,25 @@ def test_channels_of_a_recorder_may_be_named_by_options(folder: Path) -> None:
     assert "which column is the voltage?" in look(path, "breakdown").faults[0]
     checked = look(path, "breakdown", voltage_channel="CH2", probe_ratio="1000")
     assert checked.columns[1].greatest == 4000.0
+
+
+def test_each_sheet_of_a_workbook_that_holds_a_table_is_looked_at(folder: Path) -> None:
+    rows: Rows = [["Weg", "Kraft"], ["mm", "N"], *([0.1 * i, 0.5 * i] for i in range(12))]
+    path = put(folder, "b.xlsx", xlsx({"Notes": [["a", "b"]], "S1": rows, "S2": rows}))
+    found = list(check_files([path], Asked("", "", {}, folder / "none")))
+    assert [Path(one.path).name for one in found] == ["b.xlsx#S1", "b.xlsx#S2"]
+    assert all(one.read for one in found)
+    (one,) = check_files([Path(f"{path}#S2")], Asked("", "", {}, folder / "none"))
+    assert one.form == "workbook, S2!A3:B14"
+
+
+def test_several_runs_in_one_file_are_said(folder: Path) -> None:
+    """Loaded, unloaded and loaded again; a sweep up and down."""
+    travel = [*range(20), *range(18, 0, -1), *range(1, 20)]
+    text = "Weg;Kraft\nmm;N\n" + "".join(f"{0.1 * d:.1f};{0.5 * d:.1f}\n" for d in travel)
+    assert look(put(folder, "a.csv", text)).readings[0].runs == (
+        "loaded more than once; only the first loading is used"
+    )
+    sweep = SWEEP + "".join(SWEEP.splitlines(keepends=True)[:0:-1])
+    assert look(put(folder, "s.csv", sweep)).readings[0].runs == "2 sweeps"
+    assert look(put(folder, "r.csv", RAMP)).readings[0].runs == ""

@@ -114,7 +114,7 @@ def test_a_sample_that_may_be_cut_is_asked_for() -> None:
 def test_a_sampling_interval_stands_for_a_column_of_time() -> None:
     text = "CH1 (V)\tCH2\n0\t1\n1\t2\n2\t3\n"
     known = Answers("breakdown", columns={"CH1 (V)": ("voltage_V", "V")})
-    assert asked(text, known) == ["--column 'LABEL=time_s:UNIT'"]
+    assert asked(text, known) == ["--column 'LABEL=time_s:UNIT' (or --interval SECONDS)"]
     assert asked(text, replace(known, sampling_interval_s=0.1)) == []
 
 

@@ -12,7 +12,8 @@ from deamat.core.instruments import LcrAccuracy
 from deamat.core.recording import Recording
 from deamat.core.units import from_si, si_factor
 from deamat.estimators.curves.slope import fit_line
-from deamat.estimators.curves.stress_strain import loading_branch
+from deamat.estimators.curves.stress_strain import loading_branch, reloads
+from deamat.estimators.dielectric.repeats import sweep_numbers
 from deamat.run.check.found import Axis, Curve, Value
 from deamat.techniques.permittivity.config import PermittivityConfig
 from deamat.techniques.permittivity.spectrum import Spectrum, spectrum_of
@@ -99,6 +100,23 @@ def bare_values(technique: str, recording: Recording) -> tuple[Value, ...]:
         stiffness = _stiffness(x, y)
         return (*([stiffness] if stiffness else []), *found)
     return tuple(found)
+
+
+def runs_of(technique: str, recording: Recording) -> str:
+    """Say how many runs a recording holds; empty for one."""
+    columns = recording.columns
+    if technique == "permittivity" and "frequency_Hz" in columns:
+        sweeps = int(sweep_numbers(columns["frequency_Hz"]).max()) + 1
+        return f"{sweeps} sweeps" if sweeps > 1 else ""
+    if "samples" in recording.metadata:
+        return f"samples {recording.metadata['samples']}"
+    pair = pair_of(technique, recording)
+    if pair is None or pair not in _CURVES:
+        return ""
+    moved = _positive(columns[pair.x] - columns[pair.x][0])
+    if not moved.max() > 0.0 or not reloads(moved, loading_branch(moved)):
+        return ""
+    return "loaded more than once; only the first loading is used"
 
 
 def _greatest(axis: Axis, values: FloatArray) -> Value:

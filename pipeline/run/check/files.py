@@ -24,6 +24,7 @@ from deamat.formats.exports import load_exports
 from deamat.formats.format import Format
 from deamat.formats.rawfile import RawFile, read_raw
 from deamat.formats.vocabulary import ASKED
+from deamat.formats.workbook import is_workbook, sheets_with_a_table
 from deamat.run.boundary import attempt
 from deamat.run.check.found import Checked, Column
 from deamat.run.check.nearest import nearest_form, table_found
@@ -52,7 +53,7 @@ def check_files(paths: Sequence[Path], asked: Asked) -> Iterator[Checked]:
     if asked.format:
         by_name(asked.format, asked.exports)
     for path in paths:
-        for one in _below(path):
+        for one in [place for file in _below(path) for place in _places(file, asked, config)]:
             checked = attempt("check", str(one), (str(one),), partial(_check, one, asked, config))
             if isinstance(checked, Failure):
                 said = f"the program failed over it: {checked.error}; please report it"
@@ -79,13 +80,31 @@ def _below(path: Path) -> Iterator[Path]:
             yield one
 
 
+def _places(path: Path, asked: Asked, config: Config) -> list[Path]:
+    """A file, or each sheet or group of columns in it that is a specimen of its own."""
+    name, within = split_sheet(str(path))
+    if within or not Path(name).is_file():
+        return [path]
+    try:
+        place = place_of(Path(name), TECHNIQUES)
+        technique = asked.technique or place.technique
+        rows = registered(place, TECHNIQUES[technique], config) if place.technique else ()
+        found = [row.notes[SHEET] for row in rows if SHEET in row.notes]
+        data = read_raw(Path(name).parent, Path(name).name)
+        if not found and is_workbook(data):
+            found = sheets_with_a_table(RawFile(name, data, technique=technique))
+    except RawFileError:
+        return [path]  # said when it is looked at
+    return [Path(f"{path}#{one}") for one in found] if len(found) > 1 else [path]
+
+
 def _check(path: Path, asked: Asked, config: Config) -> Checked:
     name, within = split_sheet(str(path))
     if Path(name).name in _NOT_DATA:
         said = "it describes a campaign and holds no curve; give the data files"
         return Checked(str(path), read=False, faults=(said,))
     try:
-        place = place_of(Path(name), TECHNIQUES)
+        place = replace(place_of(Path(name), TECHNIQUES), within=within)
         data = read_raw(Path(name).parent, Path(name).name)
     except RawFileError as error:
         reason = "there is no such file" if not Path(name).exists() else error.reason

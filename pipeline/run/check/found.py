@@ -83,6 +83,7 @@ class Reading:
     values, refused : what it would return, and why not
     flags : what was noticed
     missing : register columns that it needs yet
+    runs : how many of them the file holds, empty for one
     curve : None where there is nothing to look at
     """
 
@@ -93,6 +94,7 @@ class Reading:
     refused: tuple[str, ...]
     flags: tuple[str, ...]
     missing: tuple[str, ...]
+    runs: str
     curve: Curve | None
 
 

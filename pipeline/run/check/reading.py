@@ -15,7 +15,7 @@ from deamat.core.records import MeasuredValue, Refusal
 from deamat.core.register_columns import usual_column
 from deamat.core.technique import AnyTechnique, Context
 from deamat.formats.exports import Export
-from deamat.run.check.curves import bare_values, curve_of
+from deamat.run.check.curves import bare_values, curve_of, runs_of
 from deamat.run.check.found import Reading, Value
 from deamat.run.check.row import OPTIONS, Place, of_options, registered
 from deamat.techniques import TECHNIQUES
@@ -69,7 +69,9 @@ def reading_of(
     measured_all = bool(values)
     if not values and curve is not None:
         values = bare_values(key, recording)
-    return Reading(key, where, measured_all, values, refused, flags, missing, curve)
+    return Reading(
+        key, where, measured_all, values, refused, flags, missing, runs_of(key, recording), curve
+    )
 
 
 def _by_reason(refusals: Sequence[Refusal]) -> tuple[str, ...]:

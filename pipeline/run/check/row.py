@@ -12,7 +12,7 @@ from deamat.core.campaign import CAMPAIGN_FILE, CampaignInfo, load_campaign
 from deamat.core.config import Config
 from deamat.core.errors import RawFileError
 from deamat.core.recording import Specimen
-from deamat.core.register import read_register
+from deamat.core.register import SHEET, read_register
 from deamat.core.technique import AnyTechnique
 from deamat.formats.rawfile import read_raw
 
@@ -30,12 +30,14 @@ class Place:
     name : of the file as its register would write it
     register : of that folder, None where there is none yet
     info : of the campaign
+    within : the sheet or the columns that are looked at, empty for all of the file
     """
 
     technique: str
     name: str
     register: Path | None
     info: CampaignInfo
+    within: str = ""
 
 
 def place_of(path: Path, techniques: Mapping[str, AnyTechnique]) -> Place:
@@ -60,7 +62,7 @@ def place_of(path: Path, techniques: Mapping[str, AnyTechnique]) -> Place:
 
 
 def registered(place: Place, technique: AnyTechnique, config: Config) -> tuple[Specimen, ...]:
-    """Return the rows that name a file; none where its folder has no register.
+    """Return the rows that name a file, or the place in it; none without a register.
 
     Raises
     ------
@@ -78,7 +80,9 @@ def registered(place: Place, technique: AnyTechnique, config: Config) -> tuple[S
     for file, error in register.errors:
         if file == named:
             raise error
-    return tuple(row for row in register.specimens if row.file == named)
+    rows = tuple(row for row in register.specimens if row.file == named)
+    within = tuple(row for row in rows if row.notes.get(SHEET, "") == place.within)
+    return within if place.within else rows
 
 
 def of_options(said: Mapping[str, str], technique: AnyTechnique, config: Config) -> Specimen:

@@ -66,6 +66,8 @@ def _reading(
     """What techniques make of a file; several that make the same of it are named together."""
     row = f", with {reading.row}" if reading.row else ""
     yield f"  {' or '.join(techniques)}{row}"
+    if reading.runs:
+        yield f"    runs     {reading.runs}"
     for name, said, method in aligned_values(reading):
         yield f"    {name}  {said}  ({method})" if method else f"    {name}  {said}"
     for reason in reading.refused:
