@@ -11,7 +11,7 @@ import re
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 
 from deamat.core.errors import ConfigError, RawFileError
 from deamat.core.recording import Recording
@@ -145,7 +145,12 @@ def _form_or_plain(form: Format, file: RawFile) -> Format:
         with contextlib.suppress(RawFileError):
             return plain.form_of(file)
         return form
-    return replace(form, read=partial(_read_or_plain, form)) if form.tabular else form
+    return _lenient(form) if form.tabular else form
+
+
+@cache
+def _lenient(form: Format) -> Format:
+    return replace(form, read=partial(_read_or_plain, form))
 
 
 def _read_or_plain(form: Format, file: RawFile) -> Recording:
@@ -155,7 +160,7 @@ def _read_or_plain(form: Format, file: RawFile) -> Recording:
         with contextlib.suppress(RawFileError):
             return plain.FORMAT.read(file)
         raise error from None
-    if any(recording.columns.keys() >= {*need} for need in needs(file.technique)):
+    if any(need <= recording.columns.keys() for need in needs(file.technique)):
         return recording
     return plain.FORMAT.read(file)
 

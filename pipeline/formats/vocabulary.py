@@ -64,9 +64,10 @@ ASKED: Mapping[str, Asked] = {
 }
 
 
-def needs(technique: str) -> tuple[tuple[str, ...], ...]:
+@cache
+def needs(technique: str) -> tuple[frozenset[str], ...]:
     """Return the sets of quantities each of which is enough for a technique."""
-    return ASKED[technique].needs if technique in ASKED else ((),)
+    return tuple(map(frozenset, ASKED[technique].needs)) if technique in ASKED else (frozenset(),)
 
 
 _REMARK = re.compile(r"\s*\([^()]*\)$")
