@@ -15,7 +15,7 @@ from deamat.formats.vocabulary import ASKED
 _ENCODINGS = ("cp1252", "cp1250", "gb18030", "cp932")  # of texts that are not UTF-8
 _BLANK, _BLANKS = re.compile(" +"), re.compile(" {2,}")
 _NUMBERS = re.compile(r"[0-9+\-.,eE ]+")
-_FEW_ROWS = 4  # of a block of results above the table; more of them are a table of their own
+FEW_ROWS = 4  # of a block of results above the table; more of them are a table of their own
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,7 +170,7 @@ def _one_table(file: RawFile, text: Text, found: Sequence[Choice]) -> Choice:
         if other.heading.labels == chosen.heading.labels:
             break  # the header is repeated: the rows of the first are refused at that line
         between = other.heading.names - chosen.heading.first
-        if between > _FEW_ROWS:
+        if between > FEW_ROWS:
             raise RawFileError(
                 file.path, f"two tables, below lines {chosen.heading.names + 1} and "
                 f"{other.heading.names + 1}", other.heading.names + 1,
@@ -193,7 +193,7 @@ def _refuse_rows_above(file: RawFile, text: Text, heading: Heading) -> None:
         cells = fields(line, heading.separator) if heading.separator in line else []
         numeric = len(cells) >= 2 and all(map(looks_numeric_grouped, cells))
         rows = rows + 1 if numeric else 0
-        if rows > _FEW_ROWS:
+        if rows > FEW_ROWS:
             raise RawFileError(
                 file.path, "rows of numbers above the labels", at + 1, value=line,
                 hint="one file holds one run: export each run to a file of its own",

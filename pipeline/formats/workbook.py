@@ -54,7 +54,7 @@ from deamat.formats.durations import as_clock
 from deamat.formats.format import Format
 from deamat.formats.header import notes
 from deamat.formats.plain_rows import Rows, recording_from, recording_of
-from deamat.formats.plain_tables import Text, complete_among, refused
+from deamat.formats.plain_tables import FEW_ROWS, Text, complete_among, refused
 from deamat.formats.rawfile import RawFile, column_letters
 from deamat.formats.structure import Heading, headings
 from deamat.formats.workbook_audit import Marks, marks_of
@@ -74,6 +74,7 @@ _DAMAGED = (
 
 Cell = str | float | int | bool | date | datetime | time | timedelta
 Cells = Sequence[Sequence[Cell]]
+Found = tuple[str, Cells, Marks, Choice]
 
 
 def is_workbook(data: bytes) -> bool:
@@ -89,8 +90,6 @@ def is_workbook(data: bytes) -> bool:
 
 
 def _read(file: RawFile) -> Recording:
-    found: list[tuple[str, Cells, Marks, Choice]] = []
-    nearest: tuple[str, Choice] | None = None
     sheets = _sheets(file)
     if file.sheet and file.sheet not in [name for name, _, _ in sheets]:
         raise RawFileError(
@@ -98,13 +97,7 @@ def _read(file: RawFile) -> Recording:
             f"{', '.join(name for name, _, _ in sheets)}",
             hint="name one of them behind the # in the register",
         )  # fmt: skip
-    for name, rows, marks in sheets:
-        if file.sheet in ("", name):
-            choice, near = _choice(file, _head(rows), marks)
-            if choice is not None:
-                found.append((name, rows, marks, choice))
-            if near is not None and (nearest is None or near.labelled > nearest[1].labelled):
-                nearest = name, near
+    found, nearest = _tables(file, sheets)
     if not found:
         raise _refused(file, nearest)
     if len(found) > 1:
@@ -116,6 +109,24 @@ def _read(file: RawFile) -> Recording:
     return _recording(file, *found[0])
 
 
+def _tables(
+    file: RawFile, sheets: Iterable[tuple[str, Cells, Marks]]
+) -> tuple[list[Found], tuple[str, Choice] | None]:
+    """Find the sheets that hold a table with what is needed, and the nearest one of the others."""
+    found: list[Found] = []
+    nearest: tuple[str, Choice] | None = None
+    for name, rows, marks in sheets:
+        if file.sheet in ("", name):
+            choice, near = _choice(file, _head(rows), marks)
+            if choice is not None:
+                found.append((name, rows, marks, choice))
+            if near is not None and (nearest is None or near.labelled > nearest[1].labelled):
+                nearest = name, near
+    for better in (_is_shown, _is_long, _is_by_label):  # than a summary, a sheet put aside
+        found = list(filter(better, found)) or found
+    return found, nearest
+
+
 def sheets_with_a_table(file: RawFile) -> list[str]:
     """Name the sheets that hold a table with what the technique needs.
 
@@ -123,11 +134,19 @@ def sheets_with_a_table(file: RawFile) -> list[str]:
     ------
     RawFileError : a workbook that cannot be read
     """
-    return [
-        name
-        for name, rows, marks in _sheets(file)
-        if _choice(file, _head(rows), marks)[0] is not None
-    ]
+    return [name for name, *_ in _tables(file, _sheets(file))[0]]
+
+
+def _is_shown(found: Found) -> bool:
+    return not found[2].sheet_hidden
+
+
+def _is_long(found: Found) -> bool:
+    return len(found[1]) - found[3].heading.first > FEW_ROWS
+
+
+def _is_by_label(found: Found) -> bool:
+    return found[3].by_label
 
 
 def _refused(file: RawFile, nearest: tuple[str, Choice] | None) -> RawFileError:
@@ -140,25 +159,44 @@ def _refused(file: RawFile, nearest: tuple[str, Choice] | None) -> RawFileError:
 
 def _sheets(file: RawFile) -> list[tuple[str, Cells, Marks]]:
     """Read every sheet of numbers and texts, from its first row and column on."""
-    from python_calamine import CalamineError, CalamineWorkbook, ZipError
+    from python_calamine import (
+        CalamineError,
+        CalamineWorkbook,
+        SheetTypeEnum,
+        SheetVisibleEnum,
+        ZipError,
+    )
 
     try:
         with zipfile.ZipFile(io.BytesIO(file.data)) as archive:
             if math.fsum(part.file_size for part in archive.infolist()) > _LARGEST:
                 raise RawFileError(file.path, "a workbook too large to unpack")
             book = CalamineWorkbook.from_filelike(io.BytesIO(file.data))
-            return [
-                (
-                    name,
-                    book.get_sheet_by_name(name).to_python(skip_empty_area=False),
-                    marks_of(archive, name),
-                )
-                for name in book.sheet_names
-            ]
+            found = []
+            for about in book.sheets_metadata:
+                if about.typ != SheetTypeEnum.WorkSheet:
+                    continue  # a chart
+                sheet = book.get_sheet_by_name(about.name)
+                rows = _unmerged(sheet.to_python(skip_empty_area=False), sheet.merged_cell_ranges)
+                marks = marks_of(archive, about.name)
+                shown = about.visible == SheetVisibleEnum.Visible
+                found.append((about.name, rows, replace(marks, sheet_hidden=not shown)))
+            return found
     except (CalamineError, ZipError, *_DAMAGED) as error:
         raise RawFileError(
             file.path, f"a workbook that cannot be read: {error}", hint=_AGAIN
         ) from error
+
+
+def _unmerged(
+    rows: list[list[Cell]], merged: Sequence[tuple[tuple[int, int], tuple[int, int]]] | None
+) -> Cells:
+    """Let a label that stands over several rows of a header stand in each of them."""
+    for (first, column), (last, _) in merged or ():
+        for at in range(first + 1, min(last + 1, len(rows))):
+            if column < len(rows[at]) and isinstance(rows[first][column], str):
+                rows[at][column] = rows[first][column]
+    return rows
 
 
 def _head(rows: Cells) -> list[str]:
@@ -284,6 +322,8 @@ def _all(marks: Marks, rows: range, column: int) -> bool:
 
 
 def _hidden(name: str, marks: Marks, rows: range) -> tuple[Flag, ...]:
+    if marks.sheet_hidden:
+        return (Flag("hidden-rows", f"sheet {name} is hidden; it was read"),)
     hidden = len(marks.hidden.intersection(rows))
     if not hidden:
         return ()

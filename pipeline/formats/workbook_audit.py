@@ -28,12 +28,14 @@ class Marks:
     percent : cells that are stored as fractions and shown in percent
     hidden : rows, counted from 0
     filtered : does a filter hide them?
+    sheet_hidden : is the sheet itself hidden?
     """
 
     unsaved: frozenset[Place] = frozenset()
     percent: frozenset[Place] = frozenset()
     hidden: frozenset[int] = frozenset()
     filtered: bool = False
+    sheet_hidden: bool = False
 
 
 def marks_of(archive: zipfile.ZipFile, sheet: str) -> Marks:

@@ -75,6 +75,26 @@ def test_two_sheets_that_would_do_are_refused() -> None:
     assert said.endswith("name the sheet in the register: `x.xlsx#1`")
 
 
+def test_a_summary_or_a_hidden_sheet_does_not_stand_in_the_way() -> None:
+    """One with the labels of a curve, for a few specimens, and one with unknown labels."""
+    short: Rows = (("Specimen", "Load (N)", "Extension (mm)"), (1.0, 1234.5, 0.5))
+    other: Rows = (("No", "Peak (N)", "Reach (mm)"), *((1.0 * n, 2.0 * n, n) for n in range(9)))
+    long = [*TABLE[:5], *((0.5 * n, 0.25 * n, 1.5 * n) for n in range(8))]
+    for beside in (short, other):
+        recording = read(xlsx({"Results": beside, "Data": long}))
+        assert recording.source.reader == "workbook, Data!A6:C13"
+    recording = read(xlsx({"Old": TABLE, "New": TABLE}, put_aside="Old"))
+    assert (recording.metadata["sheet"], recording.flags) == ("New", ())
+    recording = read(xlsx({"Old": TABLE, "Notes": RESULTS}, put_aside="Old"))
+    assert str(recording.flags[0]) == "hidden-rows: sheet Old is hidden; it was read"
+
+
+def test_a_label_may_stand_over_several_rows_of_the_header() -> None:
+    rows = [("Zeit", "Mechanik", None), (None, "Weg", "Kraft"), *TABLE[4:]]
+    merged = '<mergeCells count="2"><mergeCell ref="A1:A2"/><mergeCell ref="B1:C1"/></mergeCells>'
+    assert is_curve(read(xlsx({"S": rows}, after=merged)))
+
+
 def test_the_register_names_a_sheet() -> None:
     assert split_sheet("a/x.xlsx#Specimen 2") == ("a/x.xlsx", "Specimen 2")
     assert split_sheet("a#1.csv") == ("a#1.csv", "")

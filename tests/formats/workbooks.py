@@ -29,6 +29,7 @@ def xlsx(
     hidden: int = 0,
     replaced: Mapping[str, str] = {},
     after: str = "",
+    put_aside: str = "",
 ) -> bytes:
     """A workbook of sheets; `replaced` puts other XML in the place of a cell (`C3`).
 
@@ -36,6 +37,7 @@ def xlsx(
     ----------
     hidden : number of a row
     after : XML below the rows
+    put_aside : name of a sheet that is hidden
     """
     parts = {
         "[Content_Types].xml": f'<Types xmlns="{_PACKAGE}/content-types">{_TYPES}</Types>',
@@ -45,7 +47,8 @@ def xlsx(
     }
     listed = links = ""
     for at, (name, rows) in enumerate(sheets.items(), start=1):
-        listed += f'<sheet name="{name}" sheetId="{at}" r:id="r{at}"/>'
+        state = ' state="hidden"' if name == put_aside else ""
+        listed += f'<sheet name="{name}" sheetId="{at}"{state} r:id="r{at}"/>'
         links += (
             f'<Relationship Id="r{at}" Type="{_LINKS}/worksheet" '
             f'Target="worksheets/sheet{at}.xml"/>'
