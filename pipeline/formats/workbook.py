@@ -176,9 +176,9 @@ def _sheets(file: RawFile) -> list[tuple[str, Cells, Marks]]:
             for about in book.sheets_metadata:
                 if about.typ != SheetTypeEnum.WorkSheet:
                     continue  # a chart
+                marks = marks_of(archive, about.name)
                 sheet = book.get_sheet_by_name(about.name)
                 rows = _unmerged(sheet.to_python(skip_empty_area=False), sheet.merged_cell_ranges)
-                marks = marks_of(archive, about.name)
                 shown = about.visible == SheetVisibleEnum.Visible
                 found.append((about.name, rows, replace(marks, sheet_hidden=not shown)))
             return found

@@ -8,9 +8,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from xml.etree.ElementTree import Element, fromstring
 
-from deamat.formats.rawfile import column_number
+from deamat.formats.rawfile import column_letters, column_number
 
 _FORMULA = re.compile(rb"f(?<=[<:]f)[ />]")  # with a namespace or without; f is rare, < is not
+_FAR = re.compile(rb' r="(?:[A-Z]{2}|[A-Z]?[0-9]{6})')
+_ANYWHERE = re.compile(rb' r="([A-Z]+)([0-9]+)"')
+_MOST_CELLS = 20_000_000
 _PLACE = re.compile(r"([A-Z]+)([0-9]+)")
 _PERCENT_FORMATS = (9, 10)  # built into every .xlsx: 0 % and 0.00 %
 _WIDEST = 16384  # columns of a sheet
@@ -39,7 +42,12 @@ class Marks:
 
 
 def marks_of(archive: zipfile.ZipFile, sheet: str) -> Marks:
-    """Look for what a reader of values would miss; `zipfile` holds each part against its sum."""
+    """Look for what a reader of values would miss; `zipfile` holds each part against its sum.
+
+    Raises
+    ------
+    ValueError : a cell stands so far off that the sheet would not fit into memory
+    """
     if "xl/sharedStrings.xml" in archive.namelist():
         archive.read("xl/sharedStrings.xml")
     if "content.xml" in archive.namelist():
@@ -48,9 +56,24 @@ def marks_of(archive: zipfile.ZipFile, sheet: str) -> Marks:
     if part is None:
         return Marks()
     xml, percent = archive.read(part), _percent_styles(archive)
+    if _FAR.search(xml):
+        _insist_on_extent(sheet, xml)
     if not percent and b"hidden=" not in xml and not _FORMULA.search(xml):
         return Marks()
     return _office(fromstring(xml), percent)
+
+
+def _insist_on_extent(sheet: str, xml: bytes) -> None:
+    places = [
+        (int(row), column_number(letters.decode())) for letters, row in _ANYWHERE.findall(xml)
+    ]
+    rows = max((row for row, _ in places), default=0)
+    columns = max((column for _, column in places), default=0) + 1
+    if rows * columns > _MOST_CELLS:
+        raise ValueError(
+            f"sheet {sheet} reaches to {column_letters(columns - 1)}{rows}; delete what stands far "
+            "from the table"
+        )
 
 
 def _office(sheet: Element, percent_styles: frozenset[str]) -> Marks:

@@ -216,6 +216,14 @@ def test_what_is_not_whole_is_refused(rows: Rows, reason: str) -> None:
     assert reason in refused(xlsx({"S": rows}))
 
 
+def test_a_cell_that_stands_far_off_is_refused_before_memory_ends() -> None:
+    far = '<c r="C8"><v>1234.5</v></c><c r="{}8"><v>1</v></c>'
+    assert is_curve(read(xlsx({"S": TABLE}, replaced={"C8": far.format("AZ")})))
+    last = f'{far.format("XFD")}</row><row r="1048576"><c r="A1048576"><v>1</v></c>'
+    said = refused(xlsx({"S": TABLE}, replaced={"C8": last}))
+    assert "sheet S reaches to XFD1048576; delete what stands far from the table" in said
+
+
 def test_a_cut_or_odd_archive_is_refused() -> None:
     data = xlsx({"S": TABLE})
     assert "an archive that is no whole Excel workbook" in refused(data[:-30])
