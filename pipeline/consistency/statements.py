@@ -54,7 +54,8 @@ _DURATION = re.compile(
 )
 _STATED = re.compile(r"(.+?) ?[:=] ?(\d\S* ?\S*)")  # of a remark that is a line of its own
 _DURATION_OFF = 2.0  # times, either way: a log may have been stopped, or begun, some time apart
-_VALUE = re.compile(r"([-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?) ?(\S+)?")
+_VALUE = re.compile(r"([-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?) ?(\S+)?")
+_THOUSANDS = re.compile(r"[1-9]\d{0,2},\d{3}")  # or a decimal comma: left open
 _SLASHED = re.compile(r"(\d{1,2})/(\d{1,2})/(\d{4})\b.*")
 _MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
 _C_CLOCK = re.compile(rf"\w{{3}} ({'|'.join(_MONTHS)}) +(\d{{1,2}}) \d\d:\d\d:\d\d (\d{{4}})")
@@ -104,12 +105,13 @@ def stated_lengths(metadata: Mapping[str, str]) -> Iterator[Stated]:
         if not text[:1].isdigit():
             continue
         found, value = _LENGTH.fullmatch(key.casefold()), _VALUE.fullmatch(text)
-        if found is None or value is None:
+        if found is None or value is None or _THOUSANDS.fullmatch(value[1]):
             continue
         name = _LENGTHS[found[1]]
         unit = key[found.start(2) : found.end(2)] if found[2] else (value[2] or "")
+        number = float(value[1].replace(",", "."))
         if known(unit) and si_factor(unit)[0] == ("m/s" if name == _SPEED else "m"):
-            yield Stated(key, text, found[1], name, float(value[1]) * si_factor(unit)[1])
+            yield Stated(key, text, found[1], name, number * si_factor(unit)[1])
 
 
 def stated_days(metadata: Mapping[str, str]) -> Iterator[tuple[str, list[date]]]:

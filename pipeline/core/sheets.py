@@ -9,18 +9,19 @@ import zipfile
 import zlib
 from collections.abc import Mapping, Sequence
 from datetime import date, datetime, time, timedelta
+from xml.etree.ElementTree import ParseError
 from xml.sax.saxutils import escape
 
 from deamat.core.errors import RawFileError
 
 ARCHIVE = b"PK\x03\x04"
-_LARGEST = 1 << 27  # bytes of an archive unpacked: no register is larger
-_AGAIN = "open it in the spreadsheet program and save it again, or save the sheet as CSV"
-# What zipfile raises on a damaged archive: NotImplementedError for a compression method that a
-# flipped byte names, RuntimeError for a part that it marks as encrypted.
-_DAMAGED = (
+AGAIN = "open it in the spreadsheet program, save it, and register the saved file"
+LARGEST = 1 << 29  # bytes of an archive unpacked
+# What a damaged archive raises: NotImplementedError for a compression method that a flipped byte
+# names, RuntimeError for a part that it marks as encrypted, ParseError and KeyError for its parts.
+DAMAGED = (
     zipfile.BadZipFile, zlib.error, struct.error, NotImplementedError, RuntimeError, OSError,
-    EOFError, ValueError,
+    EOFError, ValueError, ParseError, KeyError,
 )  # fmt: skip
 _MAIN = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
 _OFFICE = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
@@ -31,8 +32,20 @@ _EPOCH = (1980, 1, 1, 0, 0, 0)  # of every part: same rows, same bytes
 Cell = str | float | int | bool | date | datetime | time | timedelta
 
 
-def read_sheets(data: bytes, path: str) -> list[tuple[str, list[list[str]]]]:
-    """Read every sheet of a workbook as rows of text, from its first row and column on.
+def is_workbook(data: bytes) -> bool:
+    """Say whether bytes are an archive with the parts of an .xlsx or .ods workbook."""
+    if not data.startswith(ARCHIVE):
+        return False
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            names = archive.namelist()
+            return "xl/workbook.xml" in names or "content.xml" in names
+    except DAMAGED:
+        return False
+
+
+def read_cells(data: bytes, path: str) -> list[tuple[str, list[list[Cell]]]]:
+    """Read every sheet of a workbook, from its first row and column on.
 
     Raises
     ------
@@ -42,16 +55,27 @@ def read_sheets(data: bytes, path: str) -> list[tuple[str, list[list[str]]]]:
 
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            if math.fsum(part.file_size for part in archive.infolist()) > _LARGEST:
+            if math.fsum(part.file_size for part in archive.infolist()) > LARGEST:
                 raise RawFileError(path, "a workbook too large to unpack")
         book = CalamineWorkbook.from_filelike(io.BytesIO(data))
-        sheets = [
+        return [
             (name, book.get_sheet_by_name(name).to_python(skip_empty_area=False))
             for name in book.sheet_names
         ]
-    except (CalamineError, ZipError, *_DAMAGED) as error:
-        raise RawFileError(path, f"a workbook that cannot be read: {error}", hint=_AGAIN) from error
-    return [(name, [list(map(as_text, row)) for row in rows]) for name, rows in sheets]
+    except (CalamineError, ZipError, *DAMAGED) as error:
+        raise RawFileError(path, f"a workbook that cannot be read: {error}", hint=AGAIN) from error
+
+
+def read_sheets(data: bytes, path: str) -> list[tuple[str, list[list[str]]]]:
+    """Read every sheet of a workbook as rows of text.
+
+    Raises
+    ------
+    RawFileError : no workbook, a damaged or a huge one
+    """
+    return [
+        (name, [list(map(as_text, row)) for row in rows]) for name, rows in read_cells(data, path)
+    ]
 
 
 def as_text(cell: Cell) -> str:

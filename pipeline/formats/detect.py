@@ -15,6 +15,7 @@ from functools import cache, partial
 
 from deamat.core.errors import ConfigError, RawFileError
 from deamat.core.recording import Recording
+from deamat.core.sheets import is_workbook
 from deamat.formats import FORMATS, plain, tdms, workbook
 from deamat.formats.declared import format_of, is_declared
 from deamat.formats.exports import EXPORTS_FILE, Export
@@ -86,7 +87,7 @@ def detect(file: RawFile, exports: Sequence[Export] = ()) -> Format:
         what, hint = own_form
         raise RawFileError(file.path, f"no format recognises this file: it is {what}", hint=hint)
     if start in _BINARY:
-        if workbook.is_workbook(file.data):
+        if is_workbook(file.data):
             return workbook.FORMAT
         what, hint = _BINARY[start]
         raise RawFileError(file.path, f"no format recognises this file: it is {what}", hint=hint)

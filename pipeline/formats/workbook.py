@@ -33,14 +33,11 @@ from __future__ import annotations
 
 import io
 import math
-import struct
 import zipfile
-import zlib
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from datetime import date, datetime, time, timedelta
+from datetime import datetime, time, timedelta
 from functools import partial
-from xml.etree.ElementTree import ParseError
 
 import numpy as np
 
@@ -48,6 +45,10 @@ from deamat.core.arrays import FloatArray
 from deamat.core.errors import RawFileError
 from deamat.core.recording import Recording
 from deamat.core.records import Flag
+from deamat.core.sheets import AGAIN as _AGAIN
+from deamat.core.sheets import DAMAGED as _DAMAGED
+from deamat.core.sheets import LARGEST as _LARGEST
+from deamat.core.sheets import Cell
 from deamat.formats.cells import OVER_RANGE
 from deamat.formats.choice import Choice
 from deamat.formats.durations import as_clock
@@ -59,34 +60,11 @@ from deamat.formats.rawfile import RawFile, column_letters
 from deamat.formats.structure import Heading, headings
 from deamat.formats.workbook_audit import Marks, marks_of
 
-ARCHIVE = b"PK\x03\x04"
-_LARGEST = 1 << 29  # bytes of an archive unpacked
 _HEAD = 1000  # rows in which labels are looked for at most
 _ROWS = 40  # of numbers in a row are the table
-_AGAIN = "open it in the spreadsheet program, save it, and register the saved file"
 
-# What zipfile raises on a damaged archive: NotImplementedError for a compression method that a
-# flipped byte names, RuntimeError for a part that it marks as encrypted.
-_DAMAGED = (
-    zipfile.BadZipFile, zlib.error, struct.error, NotImplementedError, RuntimeError, OSError,
-    EOFError, ValueError, ParseError, KeyError,
-)  # fmt: skip
-
-Cell = str | float | int | bool | date | datetime | time | timedelta
 Cells = Sequence[Sequence[Cell]]
 Found = tuple[str, Cells, Marks, Choice]
-
-
-def is_workbook(data: bytes) -> bool:
-    """Say whether bytes are an archive with the parts of an .xlsx or .ods workbook."""
-    if not data.startswith(ARCHIVE):
-        return False
-    try:
-        with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            names = archive.namelist()
-            return "xl/workbook.xml" in names or "content.xml" in names
-    except _DAMAGED:
-        return False
 
 
 def _read(file: RawFile) -> Recording:

@@ -76,12 +76,12 @@ def test_a_dimension_is_marked_and_never_guessed(folders: Folders) -> None:
 
 
 def test_what_a_file_states_stands_in_its_row(folders: Folders) -> None:
-    header = "Prüfer;K. Weiß\nPrüfdatum;12.03.2026\nDurchmesser;28 mm\nProbe;G7-innen\n\n"
+    header = "Prüfer;K. Weiß\nPrüfdatum;12.03.2026\nDurchmesser;28,5 mm\nHöhe;12,000 mm\nProbe;G7-innen\n\n"
     (inbox(folders) / "druck 1.csv").write_bytes(german(header))
     look(folders, Wish(material="gel-b"))
     (row,) = table(folders, "compression")
-    assert row["diameter_mm"] == "28"
-    assert row["height_mm"] == "?"
+    assert row["diameter_mm"] == "28.5"
+    assert row["height_mm"] == "?"  # 12,000 mm may be twelve or twelve thousand
     assert row["operator"] == "K. Weiß"
     assert row["tested_on"] == "2026-03-12"
     assert row["specimen"] == "G7-innen"
@@ -264,6 +264,26 @@ def test_a_row_goes_into_a_register_of_any_dialect_and_unit(folders: Folders) ->
         "old;gel-z;;2,85;12,5;schön",
         "gel-a druck 1;gel-a;gel-a/gel-a-druck-1.csv;2,84;12;",
     ]
+
+
+def test_a_file_that_stands_in_its_folder_stays_there(folders: Folders) -> None:
+    place = folders.raw / "spring" / "compression"
+    (place / "gel-a").mkdir()
+    (place / "gel-a" / "Test 1.CSV").write_bytes(german())
+    before = sorted(place.rglob("*"))
+    add(folders, place, Wish())
+    fill_in(folders, "compression", {"diameter_mm": "28", "height_mm": "12"})
+    add(folders, place, Wish(move=True))
+    (row,) = registered(folders, "compression")
+    assert (row["file"], row["material"]) == ("gel-a/Test 1.CSV", "gel-a")
+    assert sorted(place.rglob("*")) == before
+    assert run(folders)["exit_code"] == 0
+
+
+def test_the_project_itself_is_no_folder_of_new_files(folders: Folders) -> None:
+    for place in (folders.raw, folders.raw.parent, folders.raw.parents[1]):
+        with pytest.raises(ConfigError, match="holds the project itself"):
+            add(folders, place, Wish())
 
 
 def test_what_is_no_data_is_named_and_left(folders: Folders) -> None:

@@ -8,12 +8,11 @@ from dataclasses import dataclass, replace
 from deamat.consistency.statements import label_of, operator_of, stated_days, stated_lengths
 from deamat.core.errors import RawFileError
 from deamat.core.recording import Recording
-from deamat.core.sheets import read_sheets
+from deamat.core.sheets import is_workbook, read_sheets
 from deamat.formats.detect import detect
 from deamat.formats.exports import Export
 from deamat.formats.rawfile import RawFile
 from deamat.formats.vocabulary import ASKED
-from deamat.formats.workbook import is_workbook
 from deamat.run.other_folders import techniques_said
 from deamat.run.recognise import recordings_of
 
@@ -49,13 +48,16 @@ class Facts:
     whole: bool
 
 
-def facts_of(file: RawFile, technique: str, exports: Sequence[Export]) -> list[Facts]:
+def facts_of(
+    file: RawFile, technique: str, exports: Sequence[Export], folder: str = ""
+) -> list[Facts]:
     """Look at a file; of a workbook with several tables at each sheet.
 
     Parameters
     ----------
     technique : to which somebody says that it belongs, empty where nobody does
     exports : forms that the laboratory declares
+    folder : name of the folder that was given, which may say the technique
 
     Raises
     ------
@@ -68,8 +70,8 @@ def facts_of(file: RawFile, technique: str, exports: Sequence[Export]) -> list[F
 
     found, faults = recordings_of(file, asked, read)
     if found:
-        return [_facts(file, found)]
-    by_sheet = list(_of_sheets(file, asked, read))
+        return [_facts(file, found, folder)]
+    by_sheet = list(_of_sheets(file, asked, read, folder))
     if by_sheet:
         return by_sheet
     for fault in faults:
@@ -78,18 +80,18 @@ def facts_of(file: RawFile, technique: str, exports: Sequence[Export]) -> list[F
 
 
 def _of_sheets(
-    file: RawFile, asked: Sequence[str], read: Callable[[RawFile], Recording]
+    file: RawFile, asked: Sequence[str], read: Callable[[RawFile], Recording], folder: str
 ) -> Iterator[Facts]:
     if not is_workbook(file.data):
         return
     for name, _ in read_sheets(file.data, file.path):
         found, _ = recordings_of(replace(file, place=name), asked, read)
         if found:
-            yield _facts(replace(file, path=f"{file.path}#{name}"), found)
+            yield _facts(replace(file, path=f"{file.path}#{name}"), found, folder)
 
 
-def _facts(file: RawFile, found: Mapping[str, Recording]) -> Facts:
-    techniques = _among(file.path, found)
+def _facts(file: RawFile, found: Mapping[str, Recording], folder: str) -> Facts:
+    techniques = _among(f"{folder}/{file.path}", found)
     recording = found[techniques[0]]
     days = {day for _, several in stated_days(recording.metadata) for day in several}
     return Facts(

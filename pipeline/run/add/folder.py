@@ -95,7 +95,7 @@ def add(folders: Folders, source: Path, wish: Wish) -> Added:
     ConfigError : no such folder, campaign or technique
     RawFileError : a register or a table to fill in cannot be read
     """
-    _check(source, wish)
+    _check(source, wish, folders)
     config = load_config(folders.config, {key: t.config for key, t in TECHNIQUES.items()})
     name = campaign_named(folders.raw, wish.campaign)
     waiting = folders.raw.parent / TO_FILL_IN / name
@@ -137,9 +137,11 @@ def add(folders: Folders, source: Path, wish: Wish) -> Added:
     return added
 
 
-def _check(source: Path, wish: Wish) -> None:
+def _check(source: Path, wish: Wish, folders: Folders) -> None:
     if not source.is_dir():
         raise ConfigError(f"{source} is no folder")
+    if folders.raw.resolve().is_relative_to(source.resolve()):
+        raise ConfigError(f"{source} holds the project itself; name the folder of the new files")
     if wish.technique and wish.technique not in TECHNIQUES:
         raise ConfigError(no_technique(wish.technique, TECHNIQUES))
     if wish.material and (fault := slug_fault(wish.material)):
@@ -199,14 +201,19 @@ def _facts(path: str, said: str, campaign: Campaign, look: _Look) -> list[Facts]
     if odd := look.files[path].odd:
         look.added.say("not read", f"{path}: {odd}")
         return []
-    technique = look.wish.technique if said in ("", MISSING) else said
+    technique = said
+    if said in ("", MISSING):
+        technique = look.wish.technique or _own_technique(look.source / path, campaign)
     if technique and technique not in TECHNIQUES:
         look.added.faulty = True
         look.added.say("NOT TAKEN", f"{path}: {no_technique(technique, TECHNIQUES)}")
         technique = ""
     try:
         data = read_raw(look.source, path)
-        found = facts_of(RawFile(path, data), technique, look.exports)
+        if there := campaign.place_of(data, ""):
+            look.added.there.append(there)
+            return []
+        found = facts_of(RawFile(path, data), technique, look.exports, look.source.name)
     except RawFileError as error:
         reason = f"{error.within}: {error.reason}".removeprefix(": ")
         look.added.say("not read", f"{path}: {reason}; look at it with `deamat check`")
@@ -219,6 +226,13 @@ def _facts(path: str, said: str, campaign: Campaign, look: _Look) -> list[Facts]
         else:
             new.append(facts)
     return new
+
+
+def _own_technique(file: Path, campaign: Campaign) -> str:
+    """Name the technique in whose folder a file stands already; empty where it stands in none."""
+    place, whole = (campaign.raw / campaign.name).resolve(), file.resolve()
+    parts = whole.relative_to(place).parts if whole.is_relative_to(place) else ()
+    return parts[0] if len(parts) > 1 and parts[0] in TECHNIQUES else ""
 
 
 def _undecided(facts: Facts) -> Row:

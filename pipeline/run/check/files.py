@@ -19,12 +19,13 @@ from deamat.core.instruments import Instruments
 from deamat.core.ledger import Failure
 from deamat.core.recording import Recording
 from deamat.core.register import ENCODING, REGISTER_FILES, SHEET, split_sheet
+from deamat.core.sheets import is_workbook
 from deamat.formats.detect import KNOWN_FORMS, by_name, detect, insist_on_channels, is_binary
 from deamat.formats.exports import load_exports
 from deamat.formats.format import Format
 from deamat.formats.rawfile import RawFile, read_raw
 from deamat.formats.vocabulary import ASKED
-from deamat.formats.workbook import is_workbook, sheets_with_a_table
+from deamat.formats.workbook import sheets_with_a_table
 from deamat.run.boundary import attempt
 from deamat.run.check.found import Checked, Column
 from deamat.run.check.nearest import nearest_form, table_found
