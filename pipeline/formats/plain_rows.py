@@ -27,6 +27,7 @@ from deamat.formats.durations import clock_unit, is_clock, is_date, seconds_text
 from deamat.formats.header import notes
 from deamat.formats.numbers import parse
 from deamat.formats.rawfile import RawFile
+from deamat.formats.strain_columns import unknown_strain
 from deamat.formats.structure import fields
 from deamat.formats.table import row_flags
 
@@ -124,7 +125,11 @@ def recording_from(
         {**metadata, "columns not used": rest} if rest else metadata,
         {taken.label: taken.unit for taken in used},
         Source(file.path, file.sha256, rows.first, rows.last, encoding, "plain"),
-        (*_flags(used, rows.dropped), *_row_flags(rows)),
+        (
+            *_flags(used, rows.dropped),
+            *unknown_strain(columns, set(left) - set(rows.dropped)),
+            *_row_flags(rows),
+        ),
     )
 
 

@@ -212,6 +212,18 @@ def test_what_no_technique_asks_for_is_a_note() -> None:
     assert recording.metadata["columns not used"] == "Set, Stress, Cycle, Date"
 
 
+@pytest.mark.parametrize("label", ["Optische Dehnung", "AVE strain", "Déformation vidéo"])
+def test_a_strain_whose_label_is_unknown_is_named(label: str) -> None:
+    for head in (f"Time (s);Extension (mm);Load (N);{label} (%)", None):
+        table = head or f"Time,Extension,Load,{label}\n(s),(mm),(N),(%)"
+        rows = "".join(f"{i},{i},{i},{i}\n" for i in range(1, 5))
+        recording = read(f"{table}\n{rows.replace(',', ';') if head else rows}")
+        (flag,) = recording.flags
+        assert flag.name == "columns-not-used"
+        told = flag.detail.replace("_", " ").casefold()
+        assert f"strain column '{label.casefold()}' has an unknown label" in told
+
+
 def test_a_further_column_with_gaps_is_left_out_and_said() -> None:
     rows = "".join(f"{t}|{mm}|{n}|{'' if t else 0}\n" for t, mm, n in ROWS)
     recording = read("Time (s)|Extension (mm)|Load (N)|Tensile strain (%)\n" + rows)

@@ -29,6 +29,9 @@ _CHANNELS = ("displacement_m", "force_N", "nominal_strain", "nominal_stress_Pa")
 _MOST_LONE = 3  # wild readings in one channel
 
 
+Own = tuple[FloatArray | None, FloatArray | None]
+
+
 @dataclass(frozen=True, slots=True)
 class StressStrain:
     """A nominal stress-strain curve, signed so that loading is positive.
@@ -40,7 +43,8 @@ class StressStrain:
     strain_budget, stress_budget : relative standard uncertainties of their scales `[1]`
     stress_resolution_Pa : one step of the load cell over the area `[Pa]`
     basis : which columns and whose geometry, in words
-    own : the file's own (strain, stress) where they stand beside force and displacement
+    own : the file's own (strain, stress) where they stand beside force and displacement, None for
+        one that does not
     extensometer : strain of an extensometer that stands beside the displacement, shape (n,)
     compliance_per_Pa, u_compliance_per_Pa : strain of the machine for a stress, which was
         subtracted, and its standard uncertainty; None where no compliance is declared
@@ -54,7 +58,7 @@ class StressStrain:
     stress_budget: tuple[Contribution, ...]
     stress_resolution_Pa: float
     basis: str
-    own: tuple[FloatArray, FloatArray] | None
+    own: Own | None
     extensometer: FloatArray | None = None
     compliance_per_Pa: float | None = None
     u_compliance_per_Pa: float = 0.0
@@ -102,11 +106,10 @@ def stress_strain(
     stress_budget: tuple[Contribution, ...] = (
         machine.shared_error("load cell calibration", "force", machine.u_force_calibration),
     )
-    own = None
     compliance: float | None = None
     u_compliance = 0.0
-    if "nominal_strain" in columns and "nominal_stress_Pa" in columns:
-        own = (columns["nominal_strain"], columns["nominal_stress_Pa"])
+    own_strain, own_stress = columns.get("nominal_strain"), columns.get("nominal_stress_Pa")
+    own: Own | None = None
     if "force_N" in columns and "displacement_m" in columns:
         strain, stress = _loading_positive(
             columns["displacement_m"], columns["force_N"], length.value, section.area_m2
@@ -114,20 +117,20 @@ def stress_strain(
         strain_budget += inverted(scale_budget(length_name, length))
         stress_budget += inverted(section.budget)
         basis = f"force over the register's cross-section, displacement over its {length_name}"
-        if "nominal_stress_Pa" in columns:
-            _insist_on_own_stress(strain, stress, columns["nominal_stress_Pa"], own_stress_refused)
-        if own is not None:
-            own = _loading_positive(*own)
+        if own_stress is not None:
+            _insist_on_own_stress(strain, stress, own_stress, own_stress_refused)
+        own_strain, own_stress = _own(own_strain, own_stress, strain, stress)
         if machine.compliance_m_per_N is not None:
             per_Pa = section.area_m2 / length.value
             compliance = per_Pa * machine.compliance_m_per_N
             u_compliance = per_Pa * machine.u_compliance_m_per_N
             strain = strain - compliance * stress
-            own = None if own is None else (own[0] - compliance * stress, own[1])
+            own_strain = None if own_strain is None else own_strain - compliance * stress
             basis += ", less the machine's compliance"
-    elif own is not None:
-        strain, stress = _loading_positive(*own)
-        own = None
+        if own_strain is not None or own_stress is not None:
+            own = own_strain, own_stress
+    elif own_strain is not None and own_stress is not None:
+        strain, stress = _loading_positive(own_strain, own_stress)
         basis = (
             "the file's own stress and strain; the geometry behind them is the exporter's, could "
             "not be checked and is in no uncertainty"
@@ -247,6 +250,29 @@ def _loading_positive(
     return path / math.copysign(length, reach), load / math.copysign(area, rise)
 
 
+def _own(
+    own_strain: FloatArray | None,
+    own_stress: FloatArray | None,
+    strain: FloatArray,
+    stress: FloatArray,
+) -> Own:
+    """Sign the file's own columns as loading; a missing one takes the sign of the other channel.
+
+    A strain that never changes is of a channel that was not connected.
+    """
+    if own_strain is not None and not np.ptp(own_strain) > 0.0:
+        own_strain = None
+    if own_strain is None and own_stress is None:
+        return None, None
+    signed = _loading_positive(
+        strain if own_strain is None else own_strain, stress if own_stress is None else own_stress
+    )
+    return (
+        None if own_strain is None else signed[0],
+        None if own_stress is None else signed[1],
+    )
+
+
 def _excursion(values: FloatArray) -> tuple[int, float]:
     """Find the first sample that is farthest from sample 0, and its signed distance."""
     up, down = int(values.argmax()), int(values.argmin())
@@ -255,6 +281,13 @@ def _excursion(values: FloatArray) -> tuple[int, float]:
     if rise == -fall:
         return min((up, rise), (down, fall))
     return (up, rise) if rise > -fall else (down, fall)
+
+
+def _rounding(values: FloatArray) -> float:
+    """Half the step of a column that is coarser than its sampling, else zero."""
+    steps = np.abs(np.diff(values))
+    moved = steps[steps > 0.0]
+    return 0.5 * float(moved.min()) if 0 < moved.size < steps.size else 0.0
 
 
 def disagreement(curve: StressStrain, inside: IndexArray, tolerance: float) -> tuple[Flag, ...]:
@@ -273,16 +306,19 @@ def disagreement(curve: StressStrain, inside: IndexArray, tolerance: float) -> t
         ("stress", curve.own[1], curve.nominal_stress_Pa),
     )
     for name, theirs, ours in pairs:
+        if theirs is None:
+            continue
         a, b = theirs[inside], ours[inside]
         size = float(np.abs(b).max())
         worst = float(np.abs(a - b).max())
-        if worst > tolerance * size > 0.0:
+        ratio = float(a.dot(b) / b.dot(b)) if size > 0.0 else 1.0
+        if worst > tolerance * size + _rounding(a) and size > 0.0:
             flags.append(
                 Flag(
                     "own-columns-disagree",
-                    f"the file's own {name} is {float(a.dot(b) / b.dot(b)):.4f} times what force, "
+                    f"the file's own {name} is {ratio:.4f} times what force, "
                     "displacement and the register's geometry give; they differ by up to "
-                    f"{100 * worst / size:.2g} % of the {name} in the window",
+                    f"{100 * worst / size:.2g} % of the {name} there",
                 )
             )
     return tuple(flags)

@@ -58,7 +58,7 @@ def by_extensometer(curve: StressStrain, config: TensionConfig) -> StressStrain:
         nominal_strain=strain,
         strain_budget=(Contribution("extensometer calibration", _CALIBRATION, shared=True),),
         basis="force over the register's cross-section, strain of the extensometer",
-        own=None if curve.own is None else (strain, curve.own[1]),
+        own=None if curve.own is None else (None, curve.own[1]),
         flags=flags,
     )
 

@@ -13,6 +13,13 @@ from deamat.estimators.curves.slack import Slack, find_slack
 from deamat.techniques.shared.stress_strain import IndexArray, StressStrain
 from deamat.techniques.tension.config import TensionConfig
 
+_SLACK_LOOKED_FOR = (
+    0.05  # of the elongation: width of the windows that tell slack from a taut strip
+)
+_SLACK_TOLD = 0.01  # of the elongation
+_LOOSE = 0.1  # of the slope behind it
+_LOOSE_LOAD = 0.01  # of the greatest load
+
 
 @dataclass(frozen=True, slots=True)
 class Pull:
@@ -68,11 +75,27 @@ class Pull:
                 )
 
     def slack(self, config: TensionConfig) -> Slack | None:
-        """Look for slack in the first loading."""
-        loading = slice(self.curve.first, self.branch)
+        """Look for slack in the first loading, as far as it matters to a modulus."""
         low, high = config.window
+        return self._slack(high - low)
+
+    def slack_in(self, elongation: float) -> Slack | None:
+        """Look for a way without load that is more than a hundredth of an elongation.
+
+        A rubber that stiffens much may look loose over a wide window, but carries load there.
+        """
+        slack = self._slack(_SLACK_LOOKED_FOR * elongation)
+        if slack is None or slack.strain < _SLACK_TOLD * elongation:
+            return None
+        carried = slack.slope_before_Pa * slack.strain
+        greatest = float(self.curve.nominal_stress_Pa[self.rupture.maximum])
+        loose = carried < _LOOSE_LOAD * greatest
+        return slack if loose and slack.slope_before_Pa < _LOOSE * slack.slope_after_Pa else None
+
+    def _slack(self, window: float) -> Slack | None:
+        loading = slice(self.curve.first, self.branch)
         return find_slack(
-            self.curve.nominal_strain[loading], self.curve.nominal_stress_Pa[loading], high - low
+            self.curve.nominal_strain[loading], self.curve.nominal_stress_Pa[loading], window
         )
 
 

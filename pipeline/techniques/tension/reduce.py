@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from deamat.core.errors import FitRefused
 from deamat.core.recording import Recording, Specimen
 from deamat.core.records import MeasuredValue, Measurement, Refusal
@@ -67,7 +69,8 @@ def reduce(
             values.append(taut_modulus(pull, slack, config, slope_conditions))
         except FitRefused as error:
             refusals.append(refusal(specimen, MODULI[1], error, slope_conditions))
-    for key, make in ((STRENGTH, tensile_strength), (ELONGATION, elongation_at_break)):
+    elongation = partial(elongation_at_break, own_columns_tolerance=config.own_columns_tolerance)
+    for key, make in ((STRENGTH, tensile_strength), (ELONGATION, elongation)):
         try:
             values.append(make(pull, conditions))
         except FitRefused as error:

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
+import numpy as np
+
+from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
 from deamat.core.quantity import Contribution, Quantity
 from deamat.core.records import Condition, Flag, MeasuredValue
-from deamat.estimators.curves.rupture import Slip, find_slip
+from deamat.estimators.curves.slip import Slip, find_slip
 from deamat.estimators.curves.start import LoadZero, zero_of_load
 from deamat.techniques.shared.outcome import line_span, relative_lines
+from deamat.techniques.shared.stress_strain import disagreement
 from deamat.techniques.tension.config import ELONGATION, STRENGTH
 from deamat.techniques.tension.moduli import several_loadings
 from deamat.techniques.tension.pull import Pull
@@ -38,14 +43,20 @@ def tensile_strength(pull: Pull, conditions: Mapping[str, Condition]) -> Measure
     if zero is not None and zero.u_Pa > 0.0:
         budget += (Contribution("zero of the load cell", zero.u_Pa, shared=False),)
     slip = find_slip(pull.curve.nominal_strain, stress, pull.rupture.last)
-    flags = (*pull.flags, *_flags_of_end(pull), *_flags_of_zero(zero), *_flags_of_slip(slip))
+    flags = (*pull.flags, *_flags_of_end(pull), *_flags_of_zero(zero), *_flags_of_slip(slip, pull))
     how = "greatest nominal stress"
     limited = pull.rupture.end != "broke" or pull.load_limited
     return _value(pull, STRENGTH, strength, budget, how, top, conditions, flags, limited)
 
 
-def elongation_at_break(pull: Pull, conditions: Mapping[str, Condition]) -> MeasuredValue:
+def elongation_at_break(
+    pull: Pull, conditions: Mapping[str, Condition], own_columns_tolerance: float
+) -> MeasuredValue:
     """Nominal strain of the last sample before the load collapses, or a lower limit of it.
+
+    Parameters
+    ----------
+    own_columns_tolerance : relative difference from which the file's own strain is held against it
 
     Raises
     ------
@@ -56,8 +67,7 @@ def elongation_at_break(pull: Pull, conditions: Mapping[str, Condition]) -> Meas
     slip = find_slip(strain, pull.curve.nominal_stress_Pa, last)
     if slip is not None:
         raise FitRefused(
-            f"the load falls by {100 * slip.loss:.2g} % at once at {100 * strain[slip.at]:.4g} % "
-            "strain and rises again: slip in the grips or a partial tear, after which the machine "
+            f"{_slid(slip, strain)}: slip in the grips or a partial tear, after which the machine "
             "moved farther than the strip was stretched; use grips that follow the strip, or an "
             "extensometer",
             {"slip_strain": float(strain[slip.at]), "slips": slip.count},
@@ -79,7 +89,10 @@ def elongation_at_break(pull: Pull, conditions: Mapping[str, Condition]) -> Meas
         how = "nominal strain at the greatest stress, without a break"
     elif pull.load_limited:
         how = "nominal strain where the load begins to hold one value"
-    flags = (*pull.flags, *_flags_of_end(pull))
+    flags = (*pull.flags, *_flags_of_end(pull), *_flags_of_slack(pull, elongation))
+    if pull.curve.own is not None:
+        of_strain = replace(pull.curve, own=(pull.curve.own[0], None))
+        flags += disagreement(of_strain, np.array([last]), own_columns_tolerance)
     limited = (
         pull.rupture.end != "broke" or pull.load_limited or pull.position_held is not None
     )  # fmt: skip
@@ -139,13 +152,33 @@ def _flags_of_zero(zero: LoadZero | None) -> tuple[Flag, ...]:
     return (Flag("untared-load", f"the load starts at {zero.before / 1e3:.3g} kPa; {told}"),)
 
 
-def _flags_of_slip(slip: Slip | None) -> tuple[Flag, ...]:
-    if slip is None:
+def _flags_of_slack(pull: Pull, elongation: float) -> tuple[Flag, ...]:
+    slack = pull.slack_in(elongation)
+    if slack is None:
         return ()
+    taut, share = 100 * slack.strain, 100 * slack.strain / elongation
     return (
         Flag(
-            "slip",
-            f"the load falls by {100 * slip.loss:.2g} % at once and rises again "
-            f"({slip.count} times): slip in the grips or a partial tear",
+            "slack",
+            f"the strip is taut only from {taut:.2g} % strain on: {share:.2g} % of this elongation "
+            "is the way until then",
         ),
+    )
+
+
+def _flags_of_slip(slip: Slip | None, pull: Pull) -> tuple[Flag, ...]:
+    if slip is None:
+        return ()
+    told = f"{_slid(slip, pull.curve.nominal_strain)} ({slip.count} times)"
+    return (Flag("slip", f"{told}: slip in the grips or a partial tear"),)
+
+
+def _slid(slip: Slip, strain: FloatArray) -> str:
+    """Say what the load did while the specimen slid."""
+    at = f"{100 * strain[slip.at]:.4g} %"
+    if slip.sudden:
+        return f"the load falls by {100 * slip.loss:.2g} % at once at {at} strain and rises again"
+    return (
+        f"from {at} to {100 * strain[slip.until]:.4g} % strain the load falls or stands and then "
+        f"rises as before, {100 * slip.loss:.2g} % behind"
     )

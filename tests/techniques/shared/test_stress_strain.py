@@ -108,7 +108,7 @@ def test_own_columns_that_agree_pass_unnoticed_and_others_are_flagged_with_numbe
     (flag,) = flags(1.0, 1.04)
     assert flag == (
         "own-columns-disagree: the file's own stress is 1.0400 times what force, displacement and "
-        "the register's geometry give; they differ by up to 4 % of the stress in the window"
+        "the register's geometry give; they differ by up to 4 % of the stress there"
     )
     assert len(flags(0.5, 2.0)) == 2
 

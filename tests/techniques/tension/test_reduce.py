@@ -201,6 +201,31 @@ def test_an_extensometer_takes_the_place_of_the_crosshead() -> None:
     assert "the crosshead over the gauge length says 1.5 times as much" in said
 
 
+def test_slack_of_a_tenth_is_said_of_the_elongation() -> None:
+    loose = np.append(np.zeros(401), 5e5 * (STRAIN[401:] - STRAIN[400]))
+    (flag,) = broken(STRAIN, loose)["elongation_at_break"].flags
+    assert flag.name == "slack"
+    assert "from 20 % strain on: 10 % of this elongation" in flag.detail
+
+
+def test_the_files_own_strain_is_held_against_the_crosshead_without_a_stress_too() -> None:
+    for ratio, names in ((1.5, ["own-columns-disagree"]), (1.0, [])):
+        columns = {
+            "displacement_m": GAUGE * STRAIN, "force_N": AREA * STRESS,
+            "nominal_strain": np.round(STRAIN / ratio, 3),
+        }  # fmt: skip
+        values = by_key(reduce(TECHNIQUE, STRIP, columns, EXACT))
+        assert flags(values["tensile_modulus"]) == names
+        assert flags(values["elongation_at_break"]) == [*names, "no-break"][::-1]
+
+
+def test_a_strain_channel_that_was_not_connected_says_nothing() -> None:
+    columns = {
+        "displacement_m": GAUGE * STRAIN, "force_N": AREA * STRESS, "nominal_strain": 0.0 * STRAIN,
+    }  # fmt: skip
+    assert flags(by_key(reduce(TECHNIQUE, STRIP, columns, EXACT))["tensile_modulus"]) == []
+
+
 def test_a_refused_modulus_leaves_strength_and_elongation() -> None:
     strain = np.append(np.arange(0.0446, 9.0, 0.0227), [9.1])
     measured = pull(strain, np.append(3e5 * strain[:-1], [0.0]))
