@@ -11,11 +11,10 @@ import numpy as np
 from typing_extensions import TypeVar  # with a default, which typing has from Python 3.13 on
 
 from deamat.core.arrays import FloatArray
+from deamat.core.card_lists import JointFit
 from deamat.core.errors import OutOfRange
 from deamat.core.flags import Flag as Flag  # one of the nouns, though declared there
 from deamat.core.kinds import (
-    COEFFICIENT,
-    CONDITIONS_KIND,
     COUNT,
     ID,
     INTERVAL,
@@ -91,55 +90,6 @@ class Refusal:
         "Refused for its size (a slope within its noise), so that the mean of the specimens that "
         "were not is biased. Left out where it is false.",
     ] = False
-
-
-@dataclass(frozen=True, slots=True)
-class Excluded:
-    """A specimen that was left out on purpose, and why."""
-
-    ENTRY: ClassVar = Entry(
-        "exclusion",
-        "exclusions",
-        "A specimen that was left out on purpose: it is in no value.",
-        identity=("material", "campaign", "technique", "specimen"),
-    )
-
-    campaign: Annotated[str, ID]
-    technique: Annotated[str, SAID]
-    specimen: Annotated[str, ID]
-    reason: Annotated[str, SAID, "As `config/exclusions.toml` says it."]
-    material: Annotated[str, Mark.OF_THE_CARD]
-    register: Annotated[str, SAID, "Register, relative to raw/."]
-    register_line: Annotated[int, LINE]
-    path: Annotated[str | None, "Raw file, relative to raw/; left out if it has none."] = None
-
-    @property
-    def place(self) -> str:
-        """How exclusions and messages name it: `campaign/technique/specimen`."""
-        return f"{self.campaign}/{self.technique}/{self.specimen}"
-
-
-@dataclass(frozen=True, slots=True)
-class CalibrationRecord:
-    """A calibration that values of a card rest on, as `config/instruments.toml` declares it."""
-
-    ENTRY: ClassVar = Entry(
-        "calibration",
-        "calibrations",
-        "A calibration of a machine or a gauge: one error, shared by all values that name it.",
-        identity=("material", "calibration"),
-    )
-
-    calibration: Annotated[str, ID]
-    date: Annotated[str, SAID, "Day on which it was made, as YYYY-MM-DD."]
-    valid_until: Annotated[str, SAID, "Last day on which it holds, as YYYY-MM-DD."]
-    covers: Annotated[tuple[str, ...], array(SAID, 1), "What of the machine or gauge."]
-    certificate: Annotated[str, SAID, "Number of the certificate, or the source."]
-    u_relative: Annotated[
-        float | None,
-        UNCERTAINTY,
-        "Relative standard uncertainty. Left out where the machine or gauge declares it.",
-    ] = None
 
 
 class Result(Protocol):
@@ -430,61 +380,6 @@ class Law:
                 f"{self.key} of {self.material} is known for shear rates from {slow:g} to "
                 f"{fast:g} 1/s, not at {'no rate' if rate_per_s is None else f'{rate_per_s:g}'}"
             )
-
-
-@dataclass(frozen=True, slots=True)
-class JointFit:
-    """Values that are estimates of one fit, and err together.
-
-    Parameters
-    ----------
-    keys, campaign, conditions : which values
-    correlations : of their independent errors, row by row in the order of the keys `[1]`
-    why : what fit, in words
-    """
-
-    keys: tuple[str, ...]
-    campaign: str
-    conditions: Mapping[str, Condition]
-    correlations: tuple[tuple[float, ...], ...]
-    why: str
-
-    def holds(self, record: PropertyRecord) -> bool:
-        """Say whether a value is one of its estimates."""
-        return (
-            record.key in self.keys
-            and record.campaign == self.campaign
-            and record.conditions == self.conditions
-        )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Correlation:
-    """Two values of a card that do not err independently of each other."""
-
-    ENTRY: ClassVar = Entry(
-        "correlation",
-        "correlations",
-        "Two values that do not err independently: to be drawn jointly where both are used.",
-    )
-
-    key: Annotated[str, PROPERTY_KEY, Mark.IN_FRONT, "Property key of the one."]
-    material: Annotated[str, Mark.OF_THE_CARD]
-    campaign: Annotated[str, ID, "Campaign of the one."]
-    conditions: Annotated[
-        Mapping[str, Condition],
-        CONDITIONS_KIND,
-        "Conditions that tell the one from the others of its key and campaign.",
-    ]
-    other_key: Annotated[str, PROPERTY_KEY, Mark.IN_FRONT, "Property key of the other."]
-    other_campaign: Annotated[str, ID]
-    other_conditions: Annotated[Mapping[str, Condition], CONDITIONS_KIND]
-    coefficient: Annotated[
-        float,
-        COEFFICIENT,
-        "Correlation of their errors, shared ones included.",
-    ]
-    why: Annotated[str, SAID, "The fit, the specimens or the calibrations that both rest on."]
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,20 +13,13 @@ from operator import itemgetter
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, TypeVar
 
+from deamat.core.card_lists import CalibrationRecord, Correlation, Excluded
 from deamat.core.errors import CardError, MissingProperty
 from deamat.core.json_text import indented
 from deamat.core.kinds import CONDITIONS_KIND, ID, SAID, Kind
 from deamat.core.present import readable_record
 from deamat.core.quantity import Quantity
-from deamat.core.records import (
-    CalibrationRecord,
-    Condition,
-    Correlation,
-    Excluded,
-    Law,
-    PropertyRecord,
-    Refusal,
-)
+from deamat.core.records import Condition, Law, PropertyRecord, Refusal
 from deamat.core.schema import (
     After,
     Called,

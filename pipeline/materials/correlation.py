@@ -6,9 +6,10 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import combinations
 
+from deamat.core.card_lists import Correlation, JointFit
 from deamat.core.errors import MissingProperty
 from deamat.core.quantity import Contribution
-from deamat.core.records import Condition, Correlation, JointFit, PropertyRecord
+from deamat.core.records import Condition, PropertyRecord
 
 _Side = tuple[str, str, Mapping[str, Condition]]
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from deamat.core.card_lists import CalibrationRecord, Excluded
 from deamat.core.ledger import Provenance
 from deamat.core.present import (
     Scale,
@@ -20,16 +21,7 @@ from deamat.core.present import (
 )
 from deamat.core.properties import property_key
 from deamat.core.quantity import Contribution, Quantity
-from deamat.core.records import (
-    CalibrationRecord,
-    Condition,
-    Detail,
-    Excluded,
-    Law,
-    Origin,
-    PropertyRecord,
-    Refusal,
-)
+from deamat.core.records import Condition, Detail, Law, Origin, PropertyRecord, Refusal
 from deamat.core.schema import document_of, fields_of
 from deamat.materials.card import MaterialCard
 from deamat.materials.correlation import partners

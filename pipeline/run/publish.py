@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import TypeVar
 
 from deamat.core.calibration import Calibration
+from deamat.core.card_lists import CalibrationRecord
 from deamat.core.json_text import indented
 from deamat.core.ledger import Failure, FileEntry, Provenance
-from deamat.core.records import CalibrationRecord
 from deamat.materials.card import Credit, MaterialCard
 from deamat.materials.correlation import correlations_of
 from deamat.materials.curves import write_curves

@@ -7,11 +7,11 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from deamat.core.campaign import CAMPAIGN_FILE, Campaign, load_campaign
+from deamat.core.card_lists import Excluded
 from deamat.core.config import Config
 from deamat.core.errors import RawFileError
 from deamat.core.ledger import Failure, FileEntry, Role
 from deamat.core.recording import Specimen
-from deamat.core.records import Excluded
 from deamat.core.register import (
     SHEET,
     RegisterForm,

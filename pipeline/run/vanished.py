@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from deamat.core.card_lists import Excluded
 from deamat.core.ledger import FileEntry
-from deamat.core.records import Condition, Excluded, PropertyRecord, Refusal
+from deamat.core.records import Condition, PropertyRecord, Refusal
 from deamat.materials.database import DATABASE_FILE
 
 _QUERY = """

@@ -13,8 +13,8 @@ from deamat.actuator.inputs import Input, inputs_of
 from deamat.actuator.model import respond
 from deamat.actuator.strain import pull_in_voltage
 from deamat.actuator.uncertainty import combined, monte_carlo
+from deamat.core.card_lists import JointFit
 from deamat.core.quantity import Contribution
-from deamat.core.records import JointFit
 from deamat.materials.correlation import correlations_of
 
 from .cards import CAMPAIGN, cards, declared

@@ -10,22 +10,12 @@ import numpy as np
 from hypothesis import strategies as st
 
 from deamat.core.arrays import FloatArray
+from deamat.core.card_lists import CalibrationRecord, Correlation, Excluded
 from deamat.core.ledger import FileEntry, Provenance
 from deamat.core.properties import CONDITIONS, PROPERTIES
 from deamat.core.quantity import Contribution, Quantity
 from deamat.core.recording import Specimen
-from deamat.core.records import (
-    CalibrationRecord,
-    Condition,
-    Correlation,
-    Excluded,
-    Flag,
-    Law,
-    Measurement,
-    Origin,
-    PropertyRecord,
-    Refusal,
-)
+from deamat.core.records import Condition, Flag, Law, Measurement, Origin, PropertyRecord, Refusal
 from deamat.materials.card import Credit, MaterialCard
 
 RAW = "soft-2026/compression"

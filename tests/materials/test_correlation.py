@@ -6,8 +6,9 @@ from typing import Any
 
 import pytest
 
+from deamat.core.card_lists import JointFit
 from deamat.core.quantity import Contribution, Quantity
-from deamat.core.records import JointFit, PropertyRecord
+from deamat.core.records import PropertyRecord
 from deamat.materials.correlation import (
     coefficient_of,
     correlation,

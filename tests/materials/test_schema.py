@@ -9,17 +9,10 @@ import jsonschema
 import pytest
 from hypothesis import given, settings
 
+from deamat.core.card_lists import CalibrationRecord, Correlation, Excluded
 from deamat.core.properties import CONDITIONS, PROPERTIES
 from deamat.core.quantity import Contribution
-from deamat.core.records import (
-    CalibrationRecord,
-    Correlation,
-    Excluded,
-    Law,
-    Origin,
-    PropertyRecord,
-    Refusal,
-)
+from deamat.core.records import Law, Origin, PropertyRecord, Refusal
 from deamat.core.schema import entry_of, fields_of
 from deamat.materials.card import SCHEMA, Credit, MaterialCard
 from deamat.materials.json_schema import schema_text

@@ -8,18 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from deamat.core.card_lists import JointFit
 from deamat.core.errors import FitRefused
 from deamat.core.properties import property_key
 from deamat.core.quantity import Contribution, Quantity
-from deamat.core.records import (
-    Detail,
-    Flag,
-    JointFit,
-    Measurement,
-    PropertyRecord,
-    Refusal,
-    Summary,
-)
+from deamat.core.records import Detail, Flag, Measurement, PropertyRecord, Refusal, Summary
 from deamat.core.technique import Context
 from deamat.core.units import from_si
 from deamat.estimators.weibull.fit import fit
