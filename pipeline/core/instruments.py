@@ -173,11 +173,12 @@ class Instrument(Machine):
 
     def shared_error(self, source: str, covered: Covered, u: float) -> Contribution:
         """Return the line of a budget, with its calibration; it says where limits are defaults."""
-        told = source if self.entry else f"{source}, default limits"
+        if not self.entry:
+            return Contribution(f"{source}, default limits", u, shared=True, assumed=True)
         if covered not in self.held:
-            return Contribution(told, u, shared=True)
+            return Contribution(source, u, shared=True)
         return Contribution(
-            told, u, shared=True, calibration=self.held[covered], calibrated=covered
+            source, u, shared=True, calibration=self.held[covered], calibrated=covered
         )
 
 

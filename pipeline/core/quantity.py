@@ -33,6 +33,11 @@ class Contribution:
     inverse: Annotated[
         bool, "The value falls where what the error is of rises. Left out where it is false."
     ] = False
+    assumed: Annotated[
+        bool,
+        "From default limits: no entry of `config/instruments.toml` matches the instrument. Left "
+        "out where it is false.",
+    ] = False
     degrees_of_freedom: Annotated[
         float | None,
         "Of the standard uncertainty: then the error has Student's t distribution. Left out where "

@@ -12,7 +12,6 @@ from deamat.run.flags import listed
 from deamat.run.measure import Group, RunContext
 from deamat.run.summary import DEPARTURES
 from deamat.run.vanished import Published, vanished
-from deamat.techniques import TECHNIQUES
 
 FAILURE = 3  # the exit code of a run with an internal error
 
@@ -62,7 +61,7 @@ def describe(
             for r in refusals
         ],
         "flags": listed(records, [law for s in summaries for law in s.laws]),
-        "default_limits": _default_limits(run),
+        "default_limits": _default_limits(groups),
         "vanished": vanished(
             before, records, refusals, files, [e for s in run.surveys for e in s.excluded]
         ),
@@ -91,17 +90,14 @@ def describe(
     }
 
 
-def _default_limits(run: RunContext) -> list[dict[str, Any]]:
+def _default_limits(groups: Sequence[Group]) -> list[dict[str, Any]]:
     """Name the instruments that no entry of the configuration matches, with their campaigns."""
     found: dict[str, dict[str, None]] = {}
-    for survey in run.surveys:
-        for specimen in survey.specimens:
-            if not TECHNIQUES[specimen.technique].measures or specimen.file is None:
-                continue
-            stated = specimen.notes.get("instrument", "")
-            if not run.config.instruments.machine(stated).entry:
-                place = f"{specimen.campaign}/{specimen.technique}"
-                found.setdefault(stated, {})[place] = None
+    for group in groups:
+        for measurement in group.measurements:
+            if any(line.assumed for value in measurement.values for line in value.budget):
+                stated = measurement.specimen.notes.get("instrument", "")
+                found.setdefault(stated, {})[f"{group.campaign}/{group.technique}"] = None
     return [{"instrument": stated, "of": list(places)} for stated, places in found.items()]
 
 

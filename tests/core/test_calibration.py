@@ -86,6 +86,7 @@ def test_a_machine_that_no_entry_matches_says_so_in_its_line(tmp_path: Path) -> 
     machine = instruments(tmp_path).machine("another")
     line = machine.shared_error("load cell calibration", "force", 1.0)
     assert line.source == "load cell calibration, default limits"
+    assert line.assumed
     assert machine.entry == ""
 
 

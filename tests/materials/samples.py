@@ -224,6 +224,7 @@ budgets = st.lists(
         calibration=st.none() | names,
         calibrated=st.none() | names,
         inverse=st.booleans(),
+        assumed=st.booleans(),
         degrees_of_freedom=st.none() | st.floats(1.0, 100.0),
     ),
     max_size=3,
