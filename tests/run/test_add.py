@@ -12,6 +12,7 @@ from deamat.core.errors import ConfigError, RawFileError
 from deamat.core.sheets import read_sheets, write_workbook
 from deamat.run.add import Added, add
 from deamat.run.add.folder import Wish
+from deamat.run.add.proposal import read_proposal
 from deamat.run.folders import Folders
 from deamat.run.init import Declared, init
 from tests.run.conftest import run
@@ -120,7 +121,8 @@ def test_files_are_moved_where_that_is_asked_for(folders: Folders) -> None:
     source.write_bytes(german())
     look(folders)
     fill_in(folders, "compression", {"diameter_mm": "28", "height_mm": "12"})
-    look(folders, Wish(move=True))
+    said = look(folders, Wish(move=True))
+    assert [line.split()[0] for line in said.lines[:-1]] == ["moved"]
     assert not source.exists()
     assert (folders.raw / "spring" / "compression" / "gel-a" / "gel-a-druck-1.csv").is_file()
 
@@ -151,6 +153,22 @@ def test_new_files_join_the_rows_that_wait(folders: Folders) -> None:
     look(folders)
     assert table(folders, "compression")[:1] == before
     assert len(table(folders, "compression")) == 2
+
+
+@pytest.mark.parametrize(("second", "proposed"), [("K. Weiß", "K. Weiß"), ("A. Kern", "")])
+def test_what_all_rows_of_a_register_say_is_proposed_for_the_next(
+    folders: Folders, second: str, proposed: str
+) -> None:
+    register = folders.raw / "spring" / "compression" / "specimens.csv"
+    register.write_text(
+        "specimen,material,file,diameter_mm,height_mm,operator\n"
+        f"old-1,gel-z,,28,12,K. Weiß\nold-2,gel-z,,28,12,{second}\n"
+    )
+    (inbox(folders) / "gel-a druck 1.csv").write_bytes(german())
+    look(folders)
+    (row,) = table(folders, "compression")
+    assert row["operator"] == proposed
+    assert ("other rows: operator" in row["found_in"]) == bool(proposed)
 
 
 def test_compression_or_tension_is_asked_where_nothing_tells(folders: Folders) -> None:
@@ -294,6 +312,18 @@ def test_what_is_no_data_is_named_and_left(folders: Folders) -> None:
     assert "notes.pdf" not in said
     assert "not read   prices.csv: " in said
     assert "not read   pipe: a named pipe" in said
+    (inbox(folders) / "lcr.log").write_text("# FUNC? => Cp-D\n1.0e+01,+1.0e-10,+1.0e-03,OK\n")
+    said = "\n".join(look(folders, Wish(technique="compression")).lines)
+    assert "not read   lcr.log: it holds nothing that a technique looks at" in said
+
+
+def test_commas_that_part_thousands_are_no_decimal_commas(tmp_path: Path) -> None:
+    path = tmp_path / "compression.csv"
+    for cells, read in ((("2,5", "12,25"), ("2.5", "12.25")), (("1,234.5", "12,250"), None)):
+        path.write_text(f"file;material;height_mm;diameter_mm\nx,y.csv;m;{';'.join(cells)}\n")
+        (row,) = read_proposal(tmp_path, "compression", workbook=False).rows
+        assert row["file"] == "x,y.csv"
+        assert (row["height_mm"], row["diameter_mm"]) == (read or cells)
 
 
 def test_what_is_asked_must_be_there(folders: Folders, tmp_path: Path) -> None:

@@ -10,8 +10,10 @@ from click.testing import CliRunner, Result
 
 from deamat.commands.check import check
 from deamat.formats.blocks import block_in
+from deamat.formats.rawfile import RawFile
 from deamat.run.check import Asked, Checked, check_files
 from deamat.run.check.found import Axis, Curve
+from deamat.run.check.nearest import nearest_form
 from deamat.run.check.preview import preview
 from deamat.run.check.text import text
 from tests.formats.workbooks import Rows, xlsx
@@ -236,3 +238,59 @@ def test_several_runs_in_one_file_are_said(folder: Path) -> None:
     sweep = SWEEP + "".join(SWEEP.splitlines(keepends=True)[:0:-1])
     assert look(put(folder, "s.csv", sweep)).readings[0].runs == "2 sweeps"
     assert look(put(folder, "r.csv", RAMP)).readings[0].runs == ""
+
+
+CAMPAIGN = 'title="t"\nlaboratory="l"\nlicence="x"\nsynthetic=true\n'
+LCR = "# FUNC? => Cp-D\n" + "".join(f"1.0e+0{p},+1.0e-10,+1.0e-03,OK\n" for p in range(1, 6))
+
+
+@pytest.mark.parametrize(
+    ("row", "fault"),
+    [
+        ("s1,m,a.csv,28.6,12.5,plain", ""),
+        ("s1,m,a.csv,28.6,12.5,hysitron", "as the hysitron form has it"),
+        ("s1,m,a.csv,0,12.5,plain", "line 2, column 4: must be positive (found '0')"),
+    ],
+)
+def test_the_row_of_a_registered_file_says_how_it_is_read(
+    folder: Path, row: str, fault: str
+) -> None:
+    path = put(folder, "c/compression/a.csv", CURVE)
+    put(folder, "c/campaign.toml", CAMPAIGN)
+    header = "specimen,material,file,diameter_mm,height_mm,format"
+    put(folder, "c/compression/specimens.csv", f"{header}\n{row}\n")
+    checked = look(path)
+    assert checked.read == (not fault)
+    assert fault in "\n".join(checked.faults)
+
+
+def test_a_known_form_that_cannot_be_read_is_named_as_it_is(folder: Path) -> None:
+    """The meter's function, which the first line would state, is not stated."""
+    checked = look(put(folder, "a.log", LCR.partition("\n")[2]))
+    assert "does not say which function the meter measured" in checked.faults[0]
+    assert checked.nearest == "lcr6000 (GW Instek LCR-6000, PC-logged replies)"
+
+
+@pytest.mark.parametrize(("above", "said"), [(1, "1 line stands"), (2, "2 lines stand")])
+def test_lines_above_a_known_form_are_counted(above: int, said: str) -> None:
+    nearest = nearest_form(RawFile("r.csv", ("in my words\n" * above + RAMP).encode()))
+    assert nearest.endswith(f", but {said} above it")
+
+
+def test_first_and_last_values_of_a_column_are_said(folder: Path) -> None:
+    checked = look(put(folder, "a.csv", CURVE))
+    assert (checked.columns[1].first, checked.columns[1].last) == (0.0, 9.75)
+
+
+def test_a_form_without_a_label_for_each_column_has_them_without(folder: Path) -> None:
+    said = text(look(put(folder, "a.log", LCR)))
+    assert "  columns    frequency_Hz " in said
+    assert " as " not in said
+
+
+def test_a_curve_leaves_out_what_has_no_place_on_its_axes(folder: Path) -> None:
+    rows = "0,3\n1,2\n10,0\n100,1\n"
+    path = put(folder, "f.csv", f"Shear rate (1/s),Viscosity (Pa.s)\n{rows}")
+    curve = look(path, "viscosity").readings[0].curve
+    assert curve is not None
+    assert (curve.x, curve.y) == ((1.0, 100.0), (2.0, 1.0))

@@ -143,13 +143,14 @@ def _form_of(file: RawFile, named: str | None, asked: Asked) -> Format:
 
 def _unread(file: RawFile, technique: str, errors: Sequence[RawFileError], asked: Asked) -> Checked:
     """Say all that is wrong with a file, and which form it comes nearest to."""
+    nearest = ""
     try:
         form = _form_of(replace(file, technique=technique), asked.format or None, asked)
+        nearest = f"{form.name} ({form.title})"
         form.read(replace(file, technique=technique))
         error = RawFileError(file.path, "it holds nothing that a technique looks at")
-        nearest = f"{form.name} ({form.title})"
     except RawFileError as fault:
-        error, nearest = fault, ""
+        error = fault
     hint = error.hint
     if not nearest and not error.column and not is_binary(file):
         nearest = nearest_form(file) or table_found(file)
