@@ -67,6 +67,7 @@ def test_what_is_called_so_twice_is_named_in_full(folders: Folders) -> None:
         ("c-sylgard-182-10to1-after-cure-l", f"did you mean '{NAME[:-1]}"),
         ("../../etc/passwd", "no specimen and no file"),
         ("demo", "no specimen and no file"),
+        ("demo/campaign.toml", "no specimen and no file"),  # a campaign declares itself by it
     ],
 )
 def test_what_is_not_there_is_an_error(folders: Folders, named: str, said: str) -> None:

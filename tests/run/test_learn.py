@@ -99,6 +99,17 @@ def test_labels_and_units_that_are_known_need_no_question() -> None:
     }  # fmt: skip
 
 
+def test_a_question_shows_the_first_value_of_each_column() -> None:
+    first, *_ = propose(RawFile("x", RAMP.encode()), Answers("breakdown")).questions
+    assert "? x (0.0), CH1 (0.00), CH2 (1)" in first.text
+
+
+def test_between_commas_the_decimal_mark_is_a_point() -> None:
+    proposal = propose(RawFile("x", b"Kraft (N),Weg (mm)\n1.5,2\n2,3\n"), NOTHING)
+    assert proposal.questions == ()
+    assert proposal.decimal == "."
+
+
 def test_a_comma_that_may_part_thousands_is_asked_for() -> None:
     text = "Kraft (N);Weg (mm)\n1,000;2,000\n2,000;3,000\n"
     assert asked(text) == ["--decimal , (or .)"]
