@@ -65,6 +65,7 @@ _WORDS = {
     "K": ("kelvin", "deg k"),
 }  # fmt: skip
 _ALIASES = {word: unit for unit, words in _WORDS.items() for word in words}
+_SECONDS = ("S", "mS", "uS", "nS")  # over a time they are no siemens
 # what may mean two things, and what to write for either
 _AMBIGUOUS = {
     "lb": ("lbf (a force)", "kg (a mass)"),
@@ -107,7 +108,7 @@ def unit_as_written(text: str, si_unit: str = "") -> str | None:
     plain = re.sub(r"\s*([./*])\s*", r"\1", " ".join(text.translate(_POINTS).split()))
     if not plain:
         return None
-    if known_exactly(plain):
+    if known_exactly(plain) and not (si_unit == "s" and plain in _SECONDS):
         return plain
     folded = plain.casefold().rstrip(".")
     if folded in _AMBIGUOUS:

@@ -16,8 +16,8 @@ from deamat.formats.vocabulary import ASKED, Asked, meaning_among, plain_label, 
 HERTZ_PER_RADIAN = 1.0 / (2.0 * math.pi)
 # pure numbers by their nature; a strain may be in %
 _WITHOUT_UNIT = frozenset(
-    ("loss_tangent", "relative_permittivity", "relative_loss_index", "electric_modulus",
-     "electric_modulus_loss")
+    ("loss_tangent", "quality_factor", "relative_permittivity", "relative_loss_index",
+     "electric_modulus", "electric_modulus_loss")
 )  # fmt: skip
 _NEGATED = frozenset(("reactance_ohm", "phase_rad"))  # often written as -X
 

@@ -124,6 +124,22 @@ def _read_polar(w: FloatArray, z: FloatArray, theta: FloatArray) -> ComplexArray
     return _capacitance(-np.sin(theta) / (w * z), np.cos(theta) / (w * z))
 
 
+def _read_cp_q(w: FloatArray, c: FloatArray, q: FloatArray) -> ComplexArray:
+    return _read_cp_d(w, c, 1.0 / q)
+
+
+def _read_cs_q(w: FloatArray, c: FloatArray, q: FloatArray) -> ComplexArray:
+    return _read_cs_d(w, c, 1.0 / q)
+
+
+def _read_cp_g(w: FloatArray, c: FloatArray, g: FloatArray) -> ComplexArray:
+    return _capacitance(c, g / w)
+
+
+def _read_g_b(w: FloatArray, g: FloatArray, b: FloatArray) -> ComplexArray:
+    return _capacitance(b / w, g / w)
+
+
 def _show_cp_d(_w: FloatArray, c: ComplexArray) -> tuple[FloatArray, FloatArray]:
     return c.real, loss_tangent(c)
 
@@ -147,6 +163,23 @@ def _show_r_x(w: FloatArray, c: ComplexArray) -> tuple[FloatArray, FloatArray]:
     return -c.imag / square, -c.real / square
 
 
+def _show_cp_q(_w: FloatArray, c: ComplexArray) -> tuple[FloatArray, FloatArray]:
+    return c.real, 1.0 / loss_tangent(c)
+
+
+def _show_cs_q(w: FloatArray, c: ComplexArray) -> tuple[FloatArray, FloatArray]:
+    series, d = _show_cs_d(w, c)
+    return series, 1.0 / d
+
+
+def _show_cp_g(w: FloatArray, c: ComplexArray) -> tuple[FloatArray, FloatArray]:
+    return c.real, -c.imag * w
+
+
+def _show_g_b(w: FloatArray, c: ComplexArray) -> tuple[FloatArray, FloatArray]:
+    return -c.imag * w, c.real * w
+
+
 def _show_polar(w: FloatArray, c: ComplexArray) -> tuple[FloatArray, FloatArray]:
     return 1.0 / (w * np.abs(c)), np.arctan2(-c.real, -c.imag)
 
@@ -156,6 +189,10 @@ PAIRS: dict[str, Pair] = {
     "Cp-Rp": Pair("parallel_capacitance_F", "parallel_resistance_ohm", _read_cp_rp, _show_cp_rp),
     "Cs-D": Pair("series_capacitance_F", "loss_tangent", _read_cs_d, _show_cs_d),
     "Cs-Rs": Pair("series_capacitance_F", "series_resistance_ohm", _read_cs_rs, _show_cs_rs),
+    "Cp-Q": Pair("parallel_capacitance_F", "quality_factor", _read_cp_q, _show_cp_q),
+    "Cs-Q": Pair("series_capacitance_F", "quality_factor", _read_cs_q, _show_cs_q),
+    "Cp-G": Pair("parallel_capacitance_F", "conductance_S", _read_cp_g, _show_cp_g),
+    "G-B": Pair("conductance_S", "susceptance_S", _read_g_b, _show_g_b),
     "R-X": Pair("series_resistance_ohm", "reactance_ohm", _read_r_x, _show_r_x),
     "Z-theta": Pair("impedance_ohm", "phase_rad", _read_polar, _show_polar),
 }
@@ -163,6 +200,8 @@ PAIRS: dict[str, Pair] = {
 # readings that no finite capacitance can have
 _ZERO: dict[str, Callable[[FloatArray, FloatArray], NDArray[np.bool_]]] = {
     "Cp-Rp": lambda _, resistance: resistance == 0.0,
+    "Cp-Q": lambda _, quality: quality == 0.0,
+    "Cs-Q": lambda _, quality: quality == 0.0,
     "R-X": lambda resistance, reactance: (resistance == 0.0) & (reactance == 0.0),
     "Z-theta": lambda modulus, _: modulus == 0.0,
 }

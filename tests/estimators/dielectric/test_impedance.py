@@ -53,6 +53,10 @@ def test_the_pairs_are_the_closed_forms(f: float, c: float, d: float) -> None:
     assert pair("Cp-Rp") == pytest.approx((c, 1 / (w * c * d)), rel=1e-13)
     assert pair("Cs-D") == pytest.approx((series, d), rel=1e-13)
     assert pair("Cs-Rs") == pytest.approx((series, d / (w * series)), rel=1e-13)
+    assert pair("Cp-Q") == pytest.approx((c, 1 / d), rel=1e-13)
+    assert pair("Cs-Q") == pytest.approx((series, 1 / d), rel=1e-13)
+    assert pair("Cp-G") == pytest.approx((c, w * c * d), rel=1e-13)
+    assert pair("G-B") == pytest.approx((w * c * d, w * c), rel=1e-13)
     assert pair("R-X") == pytest.approx((z.real, z.imag), rel=1e-12)
     assert pair("Z-theta") == pytest.approx((abs(z), math.atan2(z.imag, z.real)), rel=1e-12)
     assert impedance(frequency, capacitor)[0] == pytest.approx(z, rel=1e-12)
@@ -66,7 +70,7 @@ def test_series_and_parallel_capacitance_differ_by_one_plus_d_squared() -> None:
 
 @pytest.mark.parametrize(
     ("mode", "primary", "secondary"),
-    [("R-X", 0.0, 0.0), ("Z-theta", 0.0, -1.57), ("Cp-Rp", 1e-10, 0.0)],
+    [("R-X", 0.0, 0.0), ("Z-theta", 0.0, -1.57), ("Cp-Rp", 1e-10, 0.0), ("Cp-Q", 1e-10, 0.0)],
 )
 def test_a_short_circuit_is_refused(mode: str, primary: float, secondary: float) -> None:
     f = np.array([10.0, 20.0])
