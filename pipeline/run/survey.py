@@ -347,7 +347,7 @@ def _unnamed(result: Survey, folder: Path, techniques: Mapping[str, AnyTechnique
             continue
         register = f"{folder.name}/{technique}/{techniques[technique].register.file}"
         reason = (
-            f"{register} does not name it; add a row or an exclusion"
+            f"{register} does not name it; add a row (`deamat add` proposes one) or an exclusion"
             if register in result.entries
             else f"there is no register {register}"
         )

@@ -75,7 +75,7 @@ def test_a_file_that_no_register_names_is_rejected(folders: Folders) -> None:
         "role": "unnamed",
         "status": "rejected",
         "manifest": "extra",
-        "reason": "demo/compression/specimens.csv does not name it; add a row or an exclusion",
+        "reason": "demo/compression/specimens.csv does not name it; add a row (`deamat add` proposes one) or an exclusion",
     }
 
 

@@ -161,7 +161,9 @@ def test_a_register_that_cannot_be_read_rejects_the_files_that_it_names(tmp_path
     assert (entry.role, entry.status) == ("recording", "rejected")
     assert entry.reason.startswith("its register cannot be read: demo/compression/specimens.csv")
     assert seen.entries["demo/compression/specimens.csv"].status == "rejected"
-    assert seen.entries["demo/compression/b.csv"].reason.endswith("add a row or an exclusion")
+    assert seen.entries["demo/compression/b.csv"].reason.endswith(
+        "add a row (`deamat add` proposes one) or an exclusion"
+    )
 
 
 def test_a_campaign_file_that_cannot_be_read_rejects_the_files_that_are_there(
