@@ -232,6 +232,53 @@ def test_a_folder_is_followed(folders: Folders) -> None:
         thread.join()
 
 
+@pytest.mark.usefixtures("quick_figures")
+def test_a_network_drive_is_asked(folders: Folders) -> None:
+    file = curves(folders)[0]
+    data = file.read_bytes()
+    file.unlink()
+    for path in folders.raw.rglob("*"):
+        os.utime(path, (0, 0))
+    said: list[str] = []
+    before: list[bool] = []
+    card = folders.processed / "cards" / "sylgard-182-10to1.json"
+
+    def held() -> bool:
+        return card.is_file() and file.name in card.read_text()
+
+    def stopped() -> bool:
+        if not file.exists():
+            before.append(held())
+            file.write_bytes(data)
+        return held()
+
+    watching = Watching(Patience(settle_s=0.1, unclosed_s=0.5, gone_s=0.3), poll=True, workers=1)
+    follow(folders, watching, said.append, stopped)
+    assert (before, held()) == ([False], True)
+
+
+def test_what_prevents_a_run_is_said_once_and_tried_again(
+    folders: Folders, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    failures = iter([OSError("disk full"), OSError("disk full"), ConfigError("a slip"), None])
+    said: list[str] = []
+    done = threading.Event()
+
+    def run_all(*_: object, **__: object) -> dict[str, object]:
+        failure = next(failures)
+        if failure is not None:
+            raise failure
+        done.set()
+        return {"nothing_to_do": True}
+
+    monkeypatch.setattr("deamat.run.watch.loop.run_all", run_all)
+    monkeypatch.setattr("deamat.run.watch.loop._AGAIN_s", 0.0)
+    follow(folders, Watching(), said.append, done.is_set)
+    assert [line.partition(";")[0] for line in said if line.startswith("NOT RUN")] == [
+        "NOT RUN    disk full", "NOT RUN    a slip",
+    ]  # fmt: skip
+
+
 def test_a_changed_program_ends_the_watch(
     folders: Folders, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sqlite3
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -74,6 +75,7 @@ class _Loop:
     ----------
     code : the program's own files as they were at the start
     again_s : when a run that could not be made is tried again; None for none
+    failing : why the last one could not, empty where it could
     """
 
     folders: Folders
@@ -82,6 +84,7 @@ class _Loop:
     arrivals: Arrivals
     code: dict[str, Stat] = field(default_factory=dict)
     again_s: float | None = None
+    failing: str = ""
 
     def begin(self) -> None:
         """Take what is there, run, and load what runs need, so that the next one is quick."""
@@ -98,7 +101,11 @@ class _Loop:
         """Look at the files, and run where one is complete."""
         for path, note in notices.take().items():
             self.arrivals.note(path, note)
-        seen = look(self.folders)
+        try:
+            seen = look(self.folders)
+        except OSError as error:  # a drive that is away for a while
+            self._fails(f"{error.filename}: {error.strerror}")
+            return
         if {path: stat for path, stat in seen.items() if path.startswith(_CODE)} != self.code:
             raise ConfigError("the program was changed; start `deamat watch` again")
         now_s = time.monotonic()
@@ -119,12 +126,20 @@ class _Loop:
         self.again_s = None
         try:
             document = run_all(self.folders, self.watching.workers, _silent, hold=self._hold)
-        except PipelineError as error:  # a slip in the configuration, another run at work
-            self.say(f"NOT RUN    {error}")
-            self.again_s = time.monotonic() + _AGAIN_s
+        except (PipelineError, OSError, sqlite3.Error) as error:
+            # a slip in the configuration, another run at work, a full disk: all of them end
+            self._fails(str(error))
             return
+        self.failing = ""
         for line in _told(document):
             self.say(line)
+
+    def _fails(self, reason: str) -> None:
+        """Say once why there is no run, and try again later."""
+        if reason != self.failing:
+            self.say(f"NOT RUN    {reason}; trying again every {_AGAIN_s:g} s")
+        self.failing = reason
+        self.again_s = time.monotonic() + _AGAIN_s
 
     def _hold(self, seen: Mapping[str, Stat]) -> dict[str, Stat]:
         """Hold files back that are not complete."""

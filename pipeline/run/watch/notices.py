@@ -21,6 +21,7 @@ from watchdog.observers import Observer
 from watchdog.observers.api import BaseObserver
 from watchdog.observers.polling import PollingObserver
 
+from deamat.core.errors import ConfigError
 from deamat.run.folders import name_as_text
 from deamat.run.watch.arrivals import Note
 
@@ -75,12 +76,19 @@ def noticing(roots: dict[Path, str], *, poll: bool) -> Iterator[Notices]:
     Parameters
     ----------
     poll : ask for the state of files: for network drives, of which the system notices nothing
+
+    Raises
+    ------
+    ConfigError : the system cannot watch so many folders
     """
     notices = Notices(roots)
     observer: BaseObserver = PollingObserver() if poll else Observer()
     for root in roots:
         observer.schedule(notices, str(root), recursive=True)
-    observer.start()
+    try:
+        observer.start()
+    except OSError as error:
+        raise ConfigError(f"the system cannot watch the folders: {error}; use --poll") from error
     try:
         yield notices
     finally:
