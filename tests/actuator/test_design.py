@@ -97,6 +97,33 @@ def test_two_materials_of_one_campaign_share_its_calibration() -> None:
     assert common == {"calibration of compression in made-2026"}
 
 
+def of_another_campaign(made: MaterialCard, calibration: str | None) -> MaterialCard:
+    """Return a card whose values come of another campaign, by this calibration of the load cell."""
+    records = []
+    for one in made.records:
+        budget = tuple(
+            replace(c, calibration=calibration, calibrated="force") if c.shared else c
+            for c in one.budget
+        )
+        records.append(replace(one, campaign=f"{made.material}-2026", budget=budget))
+    return replace(made, records=tuple(records))
+
+
+@pytest.mark.parametrize(
+    ("calibrations", "shared"),
+    [(("cell-7", "cell-7"), True), (("cell-7", "cell-8"), False), ((None, None), False)],
+)
+def test_two_campaigns_share_the_calibration_that_both_name(
+    calibrations: tuple[str | None, str | None], shared: bool
+) -> None:
+    made = cards()
+    for material, calibration in zip(("soft", "stiff"), calibrations, strict=True):
+        made[material] = of_another_campaign(made[material], calibration)
+    soft, stiff = (x for x in design(made, declared(), AT_4_KV).inputs if "compressive" in x.name)
+    common = {c.source for c in soft.budget} & {c.source for c in stiff.budget}
+    assert common == ({"force by cell-7"} if shared else set())
+
+
 def test_the_article_comes_out_with_its_own_inputs() -> None:
     """Design 1 of Table 5 at its layers as measured: 8.71 1/m at 22.2 V/um on the thinned film."""
     made = {"sylgard": card("sylgard", 0.957e6, 2.58)}
