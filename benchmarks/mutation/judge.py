@@ -33,7 +33,7 @@ def verdicts(
 ) -> list[Verdict]:
     """Judge a sample; each verdict is written to `log` at once, so that a run can be resumed."""
     found: dict[str, Verdict] = {}
-    waiting: queue.SimpleQueue[tuple[Mutant, str, list[str]]] = queue.SimpleQueue()
+    waiting: queue.SimpleQueue[tuple[Mutant, str, list[str], str | None]] = queue.SimpleQueue()
     known = _known(log)
     for mutant in sample:
         source = (project / "pipeline" / mutant.file).read_text(encoding="utf-8")
@@ -42,7 +42,7 @@ def verdicts(
         if told is not None and told["state"] == _state(project, mutant, told["killer"], tests):
             found[mutant.name] = Verdict(mutant, told["killer"], len(tests))
         else:
-            waiting.put((mutant, source, tests))
+            waiting.put((mutant, source, tests, told["killer"] if told else None))
     print(f"  {len(found)} known already, {len(sample) - len(found)} to judge", flush=True)
     log.parent.mkdir(parents=True, exist_ok=True)
 
@@ -54,7 +54,7 @@ def verdicts(
             checked = False
             while True:
                 try:
-                    mutant, source, tests = waiting.get_nowait()
+                    mutant, source, tests, before = waiting.get_nowait()
                 except queue.Empty:
                     break
                 limit = LEAST_CPU_S + SLOWER * math.fsum(hits.seconds[name] for name in tests)
@@ -63,7 +63,11 @@ def verdicts(
                     killer = _ask(worker, copy, source, mutant.file, tests, limit)
                     if killer is not None:
                         raise RuntimeError(f"without a mutant the tests fail too: {killer}")
-                killer = _ask(worker, copy, mutant.applied_to(source), mutant.file, tests, limit)
+                slip, killer = mutant.applied_to(source), None
+                if before in tests:  # who killed it before will most likely do so again
+                    killer = _ask(worker, copy, slip, mutant.file, [before], limit)
+                if killer is None:
+                    killer = _ask(worker, copy, slip, mutant.file, tests, limit)
                 found[mutant.name] = Verdict(mutant, killer, len(tests))
                 state = _state(project, mutant, killer, tests)
                 lines.write(json.dumps({"name": mutant.name, "killer": killer, "state": state}))
