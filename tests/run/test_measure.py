@@ -10,6 +10,7 @@ from deamat import open_database
 from deamat.core.quantity import Quantity
 from deamat.core.recording import Specimen
 from deamat.core.records import PropertyRecord
+from deamat.run import run_all
 from deamat.run.folders import Folders
 from deamat.run.measure import needs_met
 from deamat.run.register import register
@@ -84,3 +85,11 @@ def test_a_film_is_measured_with_the_modulus_of_its_own_campaign(folders: Folder
     assert (
         "compressive_modulus of this material is not known for this campaign" in refused["without"]
     )
+
+
+def test_progress_counts_from_none_to_all_specimens(folders: Folders) -> None:
+    told: list[tuple[str, int, int]] = []
+    run_all(folders, 1, lambda *one: told.append(one))
+    assert [one for one in told if one[0] == "compression"] == [
+        ("compression", done, 6) for done in range(7)
+    ]

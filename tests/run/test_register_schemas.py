@@ -13,7 +13,7 @@ import pytest
 from deamat.core.errors import RawFileError
 from deamat.core.number_grammar import is_number
 from deamat.core.register import read_register
-from deamat.run.register_schemas import header_of, schema_of
+from deamat.run.register_schemas import header_of, schema_of, write_schemas
 from deamat.techniques import TECHNIQUES
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -26,6 +26,13 @@ def test_the_published_schema_is_made_of_the_code(key: str) -> None:
     published = (DOCS / f"{key}.schema.json").read_text()
     assert published == schema_of(TECHNIQUES[key]), "run `make schema`"
     jsonschema.Draft202012Validator.check_schema(json.loads(published))
+
+
+def test_all_schemas_are_written_into_a_folder_that_need_not_be_there(tmp_path: Path) -> None:
+    for _ in range(2):
+        write_schemas(tmp_path / "docs" / "registers")
+    written = {p.name: p.read_text() for p in (tmp_path / "docs" / "registers").iterdir()}
+    assert written == {f"{key}.schema.json": schema_of(TECHNIQUES[key]) for key in TECHNIQUES}
 
 
 def test_no_schema_is_left_of_a_technique_that_is_gone() -> None:

@@ -73,3 +73,10 @@ def test_sound_pulls_raise_no_alarm() -> None:
         strain = np.round(STRAIN / 1e-3) * 1e-3
         assert held_load(strain, stress, LAST) is None
         assert held_position(strain, stress, 0, LAST) is None
+
+
+def test_a_pause_is_none_however_much_the_load_has_risen_at_the_next_sample() -> None:
+    strain = np.concatenate([STRAIN[:100], np.full(50, STRAIN[99]), STRAIN[200:]])
+    relaxed = STRESS[99] * np.linspace(1.0, 0.9, 50)
+    stress = np.concatenate([STRESS[:100], relaxed, STRESS[200:]])
+    assert held_position(strain, stress, 0, strain.size - 1) is None

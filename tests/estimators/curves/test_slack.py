@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from deamat.core.arrays import FloatArray
-from deamat.estimators.curves.slack import find_slack
+from deamat.estimators.curves.slack import find_slack, steepest_behind
 
 E = 100e3
 STRAIN = np.linspace(0.0, 0.6, 601)
@@ -77,3 +77,13 @@ def test_noise_on_a_straight_line_is_no_slack() -> None:
     rng = np.random.default_rng(10)
     noisy = (E * STRAIN + rng.normal(0.0, 5e3, STRAIN.size) for _ in range(300))
     assert sum(find_slack(STRAIN, stress, WINDOW) is not None for stress in noisy) <= 1
+
+
+def test_the_steepest_stretch_behind_a_strain_is_over_three_windows_of_it() -> None:
+    strain = np.linspace(0.0, 1.0, 1001)
+    stress = np.where(strain < 0.5, 2.0 * strain, 1.0 + 5.0 * (strain - 0.5))
+    assert steepest_behind(strain, stress, 0.1, 0.05) == pytest.approx(5.0)
+    assert steepest_behind(strain, stress, 0.6, 0.05) == pytest.approx(5.0)
+    assert steepest_behind(strain[:400], stress[:400], 0.1, 0.05) == pytest.approx(2.0)
+    assert steepest_behind(strain, stress, 0.95, 0.05) == 0.0
+    assert steepest_behind(strain, -stress, 0.1, 0.05) == 0.0
