@@ -27,6 +27,10 @@ class Channels:
     labels: Mapping[str, str]
     ratios: Mapping[str, float]
 
+    def __hash__(self) -> int:
+        """Hash of what is said: files that are asked about once are keys."""
+        return hash((*self.labels.items(), *self.ratios.items()))
+
     def __bool__(self) -> bool:
         """Say whether the register says anything."""
         return bool(self.labels or self.ratios)

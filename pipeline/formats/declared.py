@@ -34,6 +34,7 @@ import numpy as np
 
 from deamat.core.errors import RawFileError
 from deamat.core.recording import Recording
+from deamat.core.sheets import is_workbook
 from deamat.core.unit_spellings import unit_as_written
 from deamat.core.units import si_factor
 from deamat.formats.blocks import split
@@ -45,7 +46,9 @@ from deamat.formats.plain_rows import recording_of
 from deamat.formats.rawfile import RawFile
 from deamat.formats.structure import Heading
 from deamat.formats.vocabulary import ASKED, vocabulary
+from deamat.formats.workbook import lines_of_sheets, read_chosen
 
+WORKBOOK = "workbook"  # in place of a separator
 _LOOKED_AT = 1000  # lines in which the labels stand
 _START = 1 << 16  # bytes in which a form is detected
 _BELOW = 8  # lines between labels and rows
@@ -72,11 +75,27 @@ def is_declared(file: RawFile, export: Export) -> bool:
     labelled = any(column.label for column in form.columns)
     if not (labelled or form.starts_with):
         return False
+    if form.separator == WORKBOOK:
+        return _is_declared_workbook(file, export)
     lines = _head(file, export)
     return (
         bool(lines)
         and lines[0].startswith(form.starts_with)
         and (not labelled or _labels(lines, export) is not None)
+    )
+
+
+def _is_declared_workbook(file: RawFile, export: Export) -> bool:
+    if not is_workbook(file.data):
+        return False
+    try:
+        sheets = lines_of_sheets(file)
+    except RawFileError:
+        return False
+    wanted = [lines for name, lines in sheets.items() if file.sheet in ("", name)]
+    return any(
+        lines and lines[0].startswith(export.form.starts_with) and _labels(lines, export)
+        for lines in wanted
     )
 
 
@@ -128,35 +147,60 @@ def _labels(lines: Sequence[str], export: Export) -> tuple[int, list[str]] | Non
 
 def _read(file: RawFile, export: Export) -> Recording:
     form = export.form
-    where = f"{export.name} of config/{EXPORTS_FILE}"
-    technique = file.technique if file.technique in form.techniques else form.techniques[0]
+    if form.separator == WORKBOOK:
+        return _completed(read_chosen(file, lambda lines: _in_sheet(file, lines, export)), export)
     lines = _lines(file, export)
+    where = f"{export.name} of config/{EXPORTS_FILE}"
     if not lines[0].startswith(form.starts_with):
         raise RawFileError(
             file.path, f"the first line does not start with {form.starts_with!r}, as {where} "
             "declares", 1, value=lines[0][:60],
         )  # fmt: skip
-    found = _labels(lines, export)
-    if found is None:
+    if _labels(lines, export) is None:
         raise RawFileError(
             file.path, f"no row holds the labels {_wanted(export)}, which {where} declares",
             form.labels_line or 1, hint="correct the labels there, or name another `format`",
         )  # fmt: skip
-    names, cells = found if any(c.label for c in form.columns) else (form.first_line - 2, [])
-    lines = _parted(lines, form.separator, max(names, 0))
-    end = _end(lines, form.ends_before, names + 1)
-    first = form.first_line - 1 if form.first_line else _first_row(lines, names, export, cells)
+    choice, rows, end = _chosen(file, lines, export)
+    ended = file.ends_open or form.ends_open or any(rows[end:]) or not rows[-1].strip()
+    recording = recording_of(file, [*rows[:end], ""], form.encoding, choice, ended=ended)
+    return _completed(recording, export)
+
+
+def _in_sheet(file: RawFile, lines: Sequence[str], export: Export) -> Choice | None:
+    """What a declared form means by the columns of a sheet; None where it is not of that form."""
+    starts = bool(lines) and lines[0].startswith(export.form.starts_with)
+    if not starts or _labels(lines, export) is None:
+        return None
+    return _chosen(file, lines, export)[0]
+
+
+def _chosen(
+    file: RawFile, lines: Sequence[str], export: Export
+) -> tuple[Choice, Sequence[str], int]:
+    """What is meant by the columns, the lines with their fields parted, and where the rows end.
+
+    Raises
+    ------
+    RawFileError : no rows, or fewer columns than are declared
+    """
+    form = export.form
+    where = f"{export.name} of config/{EXPORTS_FILE}"
+    technique = file.technique if file.technique in form.techniques else form.techniques[0]
+    found = _labels(lines, export)
+    labelled = found is not None and any(column.label for column in form.columns)
+    names, cells = found if found is not None and labelled else (form.first_line - 2, [])
+    rows = _parted(lines, form.separator, max(names, 0))
+    end = _end(rows, form.ends_before, names + 1)
+    first = form.first_line - 1 if form.first_line else _first_row(rows, names, export, cells)
     if not 0 <= first < end:
         raise RawFileError(
-            file.path, "no data rows where they are declared", min(first, len(lines)) + 1,
+            file.path, "no data rows where they are declared", min(first, len(rows)) + 1,
             hint=f"correct `first_line` of {where}",
         )  # fmt: skip
-    width = len(split(lines[first], "|" if form.separator == "blanks" else _mark(export)))
+    width = len(split(rows[first], "|" if form.separator == "blanks" else _mark(export)))
     taken = [_taken(file, column, cells, width, where) for column in form.columns]
-    choice = _choice(export, technique, taken, (names, first), cells, width)
-    ended = file.ends_open or form.ends_open or any(lines[end:]) or not lines[-1].strip()
-    recording = recording_of(file, [*lines[:end], ""], form.encoding, choice, ended=ended)
-    return _completed(recording, export)
+    return _choice(export, technique, taken, (names, first), cells, width), rows, end
 
 
 def _wanted(export: Export) -> str:
@@ -252,10 +296,11 @@ def _completed(recording: Recording, export: Export) -> Recording:
     said = {"declared in": f"config/{EXPORTS_FILE}, [{export.name}], version {export.version}"}
     if form.level_V:
         said["level_V"] = repr(form.level_V)
+    within = recording.metadata.get("sheet", "")
     reader = f"{export.name} (config/{EXPORTS_FILE}, version {export.version})"
     return replace(
         recording,
         columns=columns,
         metadata={**recording.metadata, **said},
-        source=replace(recording.source, reader=reader),
+        source=replace(recording.source, reader=f"{reader}, sheet {within}" if within else reader),
     )

@@ -86,20 +86,20 @@ def detect(file: RawFile, exports: Sequence[Export] = ()) -> Format:
     if (own_form := _by_its_name(file)) is not None:
         what, hint = own_form
         raise RawFileError(file.path, f"no format recognises this file: it is {what}", hint=hint)
-    if start in _BINARY:
-        if is_workbook(file.data):
-            return workbook.FORMAT
-        what, hint = _BINARY[start]
-        raise RawFileError(file.path, f"no format recognises this file: it is {what}", hint=hint)
     own = [export.name for export in exports if is_declared(file, export)]
     if len(own) == 1:
         return by_name(own[0], exports)
     if own:
         raise RawFileError(
-            file.path, f"several forms of config/{EXPORTS_FILE} recognise this file: "
-            f"{', '.join(own)}", 1, value=_line(file, 1)[:60],
+            file.path,
+            f"several forms of config/{EXPORTS_FILE} recognise this file: {', '.join(own)}",
             hint="name the one that is meant in the register's `format` column",
         )  # fmt: skip
+    if start in _BINARY:
+        if is_workbook(file.data):
+            return workbook.FORMAT
+        what, hint = _BINARY[start]
+        raise RawFileError(file.path, f"no format recognises this file: it is {what}", hint=hint)
     matching = file.once(_recognising)
     if len(matching) == 1:
         return _form_or_plain(matching[0], file)

@@ -36,7 +36,14 @@ from deamat.core.units import UnknownUnit, si_factor
 from deamat.formats.vocabulary import ASKED, vocabulary
 
 EXPORTS_FILE = "exports.toml"
-SEPARATORS = {"tab": "\t", "semicolon": ";", "comma": ",", "bar": "|", "blanks": " "}
+SEPARATORS = {
+    "tab": "\t",
+    "semicolon": ";",
+    "comma": ",",
+    "bar": "|",
+    "blanks": " ",
+    "workbook": "\t",
+}
 _MOST_FORMS, _MOST_COLUMNS, _LARGEST = 200, 64, 1 << 20
 
 _Text = Annotated[str, Field(max_length=200)]
@@ -85,7 +92,7 @@ class ExportForm(Declared):
 
     title: _Text = Field(default="", description="of the instrument, for people")
     techniques: tuple[_Text, ...] = Field(min_length=1, max_length=len(ASKED))
-    separator: Literal["tab", "semicolon", "comma", "bar", "blanks"]
+    separator: Literal["tab", "semicolon", "comma", "bar", "blanks", "workbook"]
     decimal: Literal[".", ","] = "."
     encoding: Literal["utf-8", "utf-16", "cp1252", "cp1250", "gb18030", "cp932"] = "utf-8"
     starts_with: _Text = Field(default="", description="text with which the first line starts")
@@ -113,6 +120,8 @@ class ExportForm(Declared):
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
+        if self.separator == "workbook" and self.decimal != ".":
+            raise ValueError("a workbook stores numbers: leave `decimal` out")
         given = [column.quantity for column in self.columns]
         if len(set(given)) < len(given):
             raise ValueError("two columns are the same quantity")

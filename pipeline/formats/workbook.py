@@ -34,7 +34,7 @@ from __future__ import annotations
 import io
 import math
 import zipfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from datetime import datetime, time, timedelta
 from functools import partial
@@ -125,6 +125,51 @@ def _is_long(found: Found) -> bool:
 
 def _is_by_label(found: Found) -> bool:
     return found[3].by_label
+
+
+def lines_of_sheets(file: RawFile) -> dict[str, list[str]]:
+    """Write every sheet as lines of fields parted by tabs.
+
+    Raises
+    ------
+    RawFileError : a workbook that cannot be read
+    """
+    return {name: [_line(row) for row in rows] for name, rows, _ in _sheets(file)}
+
+
+def read_chosen(file: RawFile, chosen: Callable[[Sequence[str]], Choice | None]) -> Recording:
+    """Read the one sheet in which a table is chosen.
+
+    Parameters
+    ----------
+    chosen : lines of a sheet, fields parted by tabs, to what is meant by its columns
+
+    Raises
+    ------
+    RawFileError : in no sheet or in several, a percentage that is stored as a fraction, values that
+        are not stored
+    """
+    found = []
+    for name, rows, marks in _sheets(file):
+        lines = [_line(row) for row in rows]
+        choice = chosen(lines) if file.sheet in ("", name) else None
+        if choice is not None:
+            found.append((name, lines, marks, choice))
+    if len(found) != 1:
+        names = ", ".join(name for name, *_ in found) or "none"
+        raise RawFileError(
+            file.path, f"one sheet must hold the table, and {names} do",
+            hint="name the sheet in the register: `book.xlsx#Sheet`",
+        )  # fmt: skip
+    name, lines, marks, choice = found[0]
+    for taken in choice.used:
+        if taken.unit in ("%", "percent") and (choice.heading.first, taken.column) in marks.percent:
+            raise RawFileError(
+                file.path, f"{taken.label} is shown in percent and stored as a fraction",
+                choice.heading.first + 1, taken.column + 1, hint="declare its unit as 1",
+            )  # fmt: skip
+    recording = recording_of(file, lines, "utf-8", choice, ended=True)
+    return _audited(file, name, marks, choice, recording)
 
 
 def _refused(file: RawFile, nearest: tuple[str, Choice] | None) -> RawFileError:
@@ -234,6 +279,13 @@ def _recording(file: RawFile, name: str, rows: Cells, marks: Marks, choice: Choi
         choice = again
         _insist_on_values(file, name, marks, choice, len(rows))
         recording = recording_of(file, lines, "utf-8", choice, ended=True)
+    return _audited(file, name, marks, choice, recording)
+
+
+def _audited(
+    file: RawFile, name: str, marks: Marks, choice: Choice, recording: Recording
+) -> Recording:
+    """Insist on stored values, and say where the table stands and which rows are hidden."""
     first, last = recording.source.first_line, recording.source.last_line
     _insist_on_values(file, name, marks, choice, last)
     used = [taken.column for taken in choice.used if taken.name in recording.columns]

@@ -7,22 +7,25 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from deamat.core.errors import ConfigError
+from deamat.core.sheets import is_workbook
 from deamat.core.unit_spellings import unit_as_written
 from deamat.core.units import UnknownUnit, si_factor
 from deamat.formats.blocks import block_in, split
 from deamat.formats.cells import looks_numeric
 from deamat.formats.choice import quantity_in_words
 from deamat.formats.decimals import Ambiguous, decimal_mark
+from deamat.formats.declared import WORKBOOK
 from deamat.formats.exports import SEPARATORS
-from deamat.formats.plain_tables import texts
+from deamat.formats.plain_tables import Text, texts
 from deamat.formats.rawfile import RawFile
 from deamat.formats.structure import headings, split_label
 from deamat.formats.vocabulary import ASKED, meaning_among, vocabulary
+from deamat.formats.workbook import lines_of_sheets
 
 _LARGEST = 1 << 26  # bytes of a sample
 _FEWEST = 2  # labels that tell a technique; a single `x` may be anything
 _STARTS_WITH = 30  # characters of the first line
-_MARKS = {mark: name for name, mark in SEPARATORS.items()}
+_MARKS = {mark: name for name, mark in SEPARATORS.items() if name != WORKBOOK}
 _ENCODINGS = {"utf-8-sig": "utf-8", "latin-1": "cp1252"}
 
 
@@ -90,6 +93,7 @@ class Table:
     encoding: str
     starts_with: str
     rows: tuple[tuple[str, ...], ...]
+    workbook: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,8 +120,8 @@ class Proposal:
             f"[{name if name.replace('-', 'a').isalnum() else _text(name)}]",
             f"title = {_text(title)}",
             f"techniques = [{', '.join(map(_text, self.techniques))}]",
-            f"separator = {_text(_MARKS[table.separator])}",
-            f"decimal = {_text(self.decimal)}",
+            f"separator = {_text(WORKBOOK if table.workbook else _MARKS[table.separator])}",
+            *([] if table.workbook else [f"decimal = {_text(self.decimal)}"]),
             *([f"encoding = {_text(table.encoding)}"] if table.encoding != "utf-8" else []),
             *([f"starts_with = {_text(table.starts_with)}"] if table.starts_with else []),
             *([f"first_line = {table.first_line}"] if table.first_line else []),
@@ -164,7 +168,7 @@ def propose(file: RawFile, answers: Answers) -> Proposal:
         return Proposal(table, (), answers.decimal or ".", (), answers, (question,))
     columns, questions = _columns(table, techniques[0], answers)
     decimal, doubt = _decimal(table, columns, answers)
-    if not (file.body.endswith(b"\n") or answers.ends_open):
+    if not (table.workbook or file.body.endswith(b"\n") or answers.ends_open):
         text = "the last row has no line end: is the sample whole, as this exporter writes it?"
         doubt += (Question(text, "--ends-open", "ends", choices=("yes", "no")),)
     return Proposal(table, techniques, decimal, tuple(columns), answers, (*questions, *doubt))
@@ -172,8 +176,10 @@ def propose(file: RawFile, answers: Answers) -> Proposal:
 
 def _table(file: RawFile, technique: str) -> Table:
     """Find the row of labels that says most, or else the longest run of numbers."""
+    workbook = is_workbook(file.data)
+    written = _sheets(file) if workbook else texts(file)
     best: tuple[int, Table] | None = None
-    for text in texts(file):
+    for text in written:
         encoding = _ENCODINGS.get(text.encoding, text.encoding)
         for heading in headings(text.lines):
             labels = [c.strip() for c in split(text.lines[heading.names], heading.separator)]
@@ -182,10 +188,13 @@ def _table(file: RawFile, technique: str) -> Table:
             if known and len(set(filter(None, labels))) > 1 and (best is None or known > best[0]):
                 units = (heading.units + ("",) * len(labels))[: len(labels)]
                 separator = heading.separator
-                best = known, Table(separator, tuple(labels), units, 0, encoding, "", rows)
+                best = (
+                    known,
+                    Table(separator, tuple(labels), units, 0, encoding, "", rows, workbook),
+                )
     if best is not None:
         return best[1]
-    text = texts(file)[0]
+    text = max(written, key=lambda one: len(one.lines))
     block = block_in(text.lines)
     if block is None:
         raise ConfigError(f"{file.path}: it holds no rows of numbers")
@@ -194,11 +203,17 @@ def _table(file: RawFile, technique: str) -> Table:
     labels = split(text.lines[block.labels_line], block.separator) if block.labels else []
     if len(labels) == block.columns and len(set(labels)) == block.columns:
         units = tuple(split_label(label)[1] for label in block.labels)
-        return Table(block.separator, block.labels, units, 0, encoding, "", rows)
+        return Table(block.separator, block.labels, units, 0, encoding, "", rows, workbook)
     numbers = tuple(f"#{number}" for number in range(1, block.columns + 1))
     start = text.lines[0][:_STARTS_WITH].rstrip() if block.first else ""
     unknown = ("",) * block.columns
-    return Table(block.separator, numbers, unknown, block.first + 1, encoding, start, rows)
+    at = block.first + 1
+    return Table(block.separator, numbers, unknown, at, encoding, start, rows, workbook)
+
+
+def _sheets(file: RawFile) -> list[Text]:
+    """The sheets of a workbook as texts."""
+    return [Text(lines, "utf-8", ended=True) for lines in lines_of_sheets(file).values() if lines]
 
 
 def _rows(lines: Sequence[str], first: int, separator: str) -> tuple[tuple[str, ...], ...]:
@@ -307,7 +322,7 @@ def _decimal(
     """The decimal mark of the cells that are used; two that fit are asked for."""
     if answers.decimal:
         return answers.decimal, ()
-    if table.separator == ",":
+    if table.separator == "," or table.workbook:
         return ".", ()
     try:
         return decimal_mark(_cells(table, columns)), ()

@@ -43,6 +43,7 @@ def refused(text: str, channels: Channels) -> str:
 def test_a_row_gives_channels_their_roles() -> None:
     assert channels_of(row("CH1,CH2,2000,1e-3")) == BOTH
     assert not channels_of(row(",,,"))
+    assert hash(channels_of(row("CH1,CH2,2000,1e-3"))) == hash(BOTH)
     with pytest.raises(RawFileError, match=r"line 2: probe_ratio is no ratio .found '1000:1'"):
         channels_of(row("CH1,,1000:1,"))
     with pytest.raises(RawFileError, match="is no ratio"):

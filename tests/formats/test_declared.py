@@ -14,6 +14,7 @@ from deamat.formats.declared import format_of
 from deamat.formats.detect import KNOWN_FORMS, by_name, detect
 from deamat.formats.exports import Export, load_exports, parse_exports
 from deamat.formats.rawfile import RawFile
+from tests.formats.workbooks import Rows, xlsx
 
 RAMP = """
 [ramp]
@@ -222,3 +223,47 @@ def test_lines_of_keys_are_found() -> None:
     assert line_of(text, ("a", "b", 1, "y")) == 7
     assert line_of(text, ("a", "b", 0)) == 4
     assert line_of(text, ("nothing",)) is None
+
+
+BOOK = """
+[rig-book]
+techniques = ["compression"]
+separator = "workbook"
+columns = [
+    { label = "CH1", quantity = "force_N", unit = "N" },
+    { label = "CH2", quantity = "displacement_m", unit = "mm" },
+]
+"""
+SHEET: Rows = [["Rig 7"], ["n", "CH1", "CH2"], [1.0, 0.5, 0.1], [2.0, 1.0, 0.2], [3.0, 1.5, 0.3]]
+
+
+def test_a_workbook_may_be_declared() -> None:
+    recording = read(BOOK, xlsx({"Notes": [["a", "b"]], "Data": SHEET}), "compression")
+    assert recording.columns["force_N"].tolist() == [0.5, 1.0, 1.5]
+    assert recording.columns["displacement_m"].tolist() == pytest.approx([1e-4, 2e-4, 3e-4])
+    assert recording.source.reader.startswith("rig-book (config/exports.toml, version ")
+    assert recording.source.reader.endswith(", sheet Data")
+    assert (recording.source.first_line, recording.source.last_line) == (3, 5)
+
+
+def test_two_sheets_of_a_declared_workbook_are_named_in_the_register() -> None:
+    data = xlsx({"S1": SHEET, "S2": SHEET})
+    with pytest.raises(RawFileError, match="one sheet must hold the table, and S1, S2 do"):
+        read(BOOK, data, "compression")
+    file = RawFile("c/x.xlsx", data, technique="compression", place="S2")
+    assert detect(file, exports(BOOK)).read(file).metadata["sheet"] == "S2"
+
+
+def test_other_workbooks_are_read_as_before() -> None:
+    rows: Rows = [["Weg", "Kraft"], ["mm", "N"], [0.1, 0.5], [0.2, 1.0]]
+    assert "rig-book" not in read(BOOK, xlsx({"Data": rows}), "compression").source.reader
+    assert "leave `decimal` out" in refused(BOOK.replace("columns", 'decimal = ","\ncolumns', 1))
+
+
+def test_a_percentage_of_a_workbook_is_a_fraction() -> None:
+    text = BOOK.replace("force_N", "nominal_stress_Pa").replace('"N"', '"kPa"')
+    text = text.replace("displacement_m", "nominal_strain").replace('"mm"', '"%"')
+    percent = {"C3": '<c r="C3" s="1"><v>0.1</v></c>'}
+    data = xlsx({"Data": SHEET}, replaced=percent)
+    with pytest.raises(RawFileError, match="CH2 is shown in percent and stored as a fraction"):
+        read(text, data, "compression")

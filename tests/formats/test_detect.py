@@ -47,9 +47,9 @@ def test_every_format_has_a_sample_or_tests_of_its_own() -> None:
 
 
 def test_an_unknown_file_is_described() -> None:
-    assert refused(b"a;b;c\n1;2;3\n4;5;6\n") == (
+    assert refused(b"aa;bb;cc\n1;2;3\n4;5;6\n") == (
         "x, line 1: no format recognises this file: no table with labels and units (utf-8, "
-        "probably semicolon-separated with 3 columns) (found 'a;b;c'); export a table with a row "
+        "probably semicolon-separated with 3 columns) (found 'aa;bb;cc'); export a table with a row "
         "of labels and the unit of each column, such as `Load (N)`, or name the format in the "
         "register's `format` column"
     )

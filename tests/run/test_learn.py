@@ -18,6 +18,7 @@ from deamat.run import explain
 from deamat.run.folders import Folders
 from deamat.run.learn import Answers, propose
 from deamat.run.register import register
+from tests.formats.workbooks import Rows, xlsx
 from tests.run.conftest import curves, folders, quick_figures, run
 
 __all__ = ["folders", "quick_figures"]
@@ -200,3 +201,15 @@ def test_an_entry_that_does_not_hold_stops_the_run(folders: Folders) -> None:
     (folders.config / "exports.toml").write_text(OWN.replace("force_N", "farce_N"))
     with pytest.raises(ConfigError, match=r"line 7: .*no quantity is called 'farce_N'"):
         run(folders)
+
+
+def test_a_workbook_is_learned_too(tmp_path: Path) -> None:
+    rows: Rows = [["Rig 7"], ["n", "CH1", "CH2"], [1.0, 0.5, 0.1], [2.0, 1.0, 0.2], [3.0, 1.5, 0.3]]
+    path = tmp_path / "rig.xlsx"
+    path.write_bytes(xlsx({"Data": rows}))
+    done = teach(path, "--technique", "tension", "--column", "CH1=force_N:N", "--column",
+                 "CH2=displacement_m:mm", "--write")  # fmt: skip
+    assert done.exit_code == 0, done.output
+    assert 'separator = "workbook"\ncolumns' in done.output
+    assert "# force_N: 3 values from 0.5 to 1.5" in done.output
+    assert load_exports(tmp_path / "config")[0].form.separator == "workbook"
