@@ -148,8 +148,13 @@ def other_separator(sheet: Sheet, rng: Generator, _: Sheet) -> bytes:
 
 
 def thousands(sheet: Sheet, rng: Generator, _: Sheet) -> bytes:
-    """Group the digits before the decimal mark, or all of them, by thousands."""
+    """Group the digits before the decimal mark, or all of them, by thousands.
+
+    No program uses its decimal mark for that: `3.810` among `22.0` would be no damage but a number.
+    """
     mark = str(rng.choice([",", ".", " ", "'", "\u00a0", "\u2009"]))
+    if mark == sheet.decimal:
+        return sheet.data
     at = int(rng.choice(sheet.numeric))
     table = [list(row) for row in sheet.table]
     for row in table:

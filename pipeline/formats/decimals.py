@@ -9,6 +9,7 @@ from deamat.core.number_grammar import is_number
 
 _GROUPS_BY_COMMA = re.compile(r"[+-]?[1-9][0-9]{0,2}(?:,[0-9]{3})+(?:\.[0-9]*)?")
 _GROUPS_BY_POINT = re.compile(r"[+-]?[1-9][0-9]{0,2}(?:\.[0-9]{3})+,[0-9]*")
+_WHOLE_BY_POINT = re.compile(r"[+-]?[1-9][0-9]{0,2}(?:\.[0-9]{3})+")
 _GROUPS_BY_SPACE = re.compile(r"[+-]?[0-9]{1,3}(?:[\u00a0\u202f' ][0-9]{3})+(?:[.,][0-9]*)?")
 _SPACES = re.compile(r"[\u00a0\u202f' ]")
 # what no damage makes of a decimal point: a group and a fraction, two groups, a blank of print
@@ -64,6 +65,23 @@ def decimal_mark(cells: Iterable[str]) -> str:
     if point and comma and doubtful:
         raise Ambiguous(doubtful)
     return "," if comma and not point else "."
+
+
+def thousands_by_point(cells: Iterable[str], others: Iterable[str]) -> str:
+    """Return a cell whose point may part thousands, for other cells have decimal commas.
+
+    Parameters
+    ----------
+    cells : of a column that is needed: all of them like `3.810`, whole numbers apart
+    others : cells of the same table
+    """
+    first = ""
+    for cell in cells:
+        if "." in cell:
+            if not _WHOLE_BY_POINT.fullmatch(cell):
+                return ""
+            first = first or cell
+    return first if first and any(map(_has_comma, others)) else ""
 
 
 def sole_decimal_mark(block: bytes, declared: str = "") -> str:

@@ -22,6 +22,7 @@ from deamat.formats.decimals import (
     normal,
     number_text,
     sole_decimal_mark,
+    thousands_by_point,
 )
 from deamat.formats.durations import clock_unit, is_clock, is_date, seconds_text
 from deamat.formats.header import notes
@@ -31,6 +32,7 @@ from deamat.formats.strain_columns import unknown_strain
 from deamat.formats.structure import fields
 from deamat.formats.table import row_flags
 
+_MARKS = {",": "comma", ".": "point"}
 _OF_THE_DAY_s = 3600.0  # an elapsed time starts earlier
 _ONE_RATE = 1.05  # rates that differ by less are one setting
 
@@ -168,11 +170,13 @@ def _values(
         decimal = choice.decimal or decimal_mark(
             cell for t in choice.needed for cell in cells[t.name]
         )
+        if decimal == "." and not choice.decimal:
+            _insist_on_points(list(zip(*split, strict=True)), choice)
     except Ambiguous as error:
-        cell = str(error)
+        cell, mark = str(error), "," if "," in str(error) else "."
         raise RawFileError(
             file.path, f"two readings fit: {cell} is {cell.replace(',', '.')} with a decimal "
-            f"comma and {cell.replace(',', '')} with a comma between thousands",
+            f"{_MARKS[mark]} and {cell.replace(mark, '')} with a {_MARKS[mark]} between thousands",
             choice.heading.first + 1, value=cell,
             hint="export with decimal points and without thousands separators",
         ) from error  # fmt: skip
@@ -194,6 +198,19 @@ def _values(
     return values, dropped
 
 
+def _insist_on_points(columns: Sequence[Sequence[str]], choice: Choice) -> None:
+    """Refuse points that may part thousands, where another column has decimal commas.
+
+    Raises
+    ------
+    Ambiguous : with such a cell
+    """
+    for taken in choice.needed if columns else ():
+        others = (cell for column in columns for cell in column)
+        if cell := thousands_by_point(columns[taken.column], others):
+            raise Ambiguous(cell)
+
+
 def _columns_of(rows: Sequence[str], separator: str) -> list[tuple[str, ...]] | None:
     """Turn rows of one length into columns, or return None where anything is odd."""
     try:
@@ -211,6 +228,11 @@ def _quick(
     decimal = sole_decimal_mark(b"\n".join(blocks[t.name] for t in choice.needed), choice.decimal)
     if not decimal:
         return None
+    if decimal == "." and not choice.decimal:
+        try:
+            _insist_on_points(columns, choice)
+        except Ambiguous:
+            return None  # said by the long way
     values, dropped = {}, {}
     for taken in choice.used:
         column = parse(blocks[taken.name], 1, Dialect("\t", decimal))

@@ -274,6 +274,14 @@ def test_a_comma_that_may_be_a_mark_or_between_thousands_is_refused() -> None:
     assert "two readings fit: 1,000 is 1.000 with a decimal comma and 1000 with" in refused(text)
 
 
+def test_points_between_thousands_beside_decimal_commas_are_refused() -> None:
+    rows = "".join(f"{n};3.{n}10;22,{n}\n" for n in range(1, 9))
+    said = refused("Time (min);Viscosity (cP);Temp (C)\n" + rows, "viscosity")
+    assert "two readings fit: 3.110 is 3.110 with a decimal point and 3110 with a point" in said
+    sound = read("Time (min);Viscosity (cP);Temp (C)\n" + rows.replace(",", "."), "viscosity")
+    assert sound.columns["viscosity_Pas"][0] == pytest.approx(3.11e-3)
+
+
 def test_thousands_are_read_where_a_decimal_point_proves_them() -> None:
     text = 'Zeit;Weg;Kraft\ns;mm;N\n1;0.5;"1,234.5"\n2;0.75;"2,345"\n'
     assert read(text).columns["force_N"].tolist() == [1234.5, 2345.0]
