@@ -10,7 +10,7 @@ from fnmatch import fnmatchcase
 from typing import Annotated, Self
 
 import numpy as np
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field, PrivateAttr, model_validator
 
 from deamat.core.arrays import FloatArray
 from deamat.core.calibration import Calibration, CalibrationIds, Covered, held_on
@@ -194,6 +194,7 @@ class Instruments(Declared):
     machines: Mapping[str, Machine] = Field(default_factory=dict)
     gauges: Mapping[str, Gauge] = Field(default_factory=dict)
     calibrations: Mapping[str, Calibration] = Field(default_factory=dict)
+    _found: dict[tuple[str, date | None], Instrument] = PrivateAttr(default_factory=dict)
 
     @model_validator(mode="after")
     def _calibrated(self) -> Self:
@@ -224,10 +225,16 @@ class Instruments(Declared):
         ----------
         tested_on : chooses among its calibrations, whose uncertainties take the place of its own
         """
+        asked = instrument, tested_on  # the same for most rows of a register
+        if asked not in self._found:
+            self._found[asked] = self._matching(instrument, tested_on)
+        return self._found[asked]
+
+    def _matching(self, instrument: str, day: date | None) -> Instrument:
         for name, machine in self.machines.items():
             pattern = f"*{machine.match.casefold()}*"
             if machine.match and fnmatchcase(instrument.casefold(), pattern):
-                return self._on(tested_on, name, machine)
+                return self._on(day, name, machine)
         return Instrument()
 
     def _on(self, day: date | None, name: str, machine: Machine) -> Instrument:
