@@ -23,8 +23,13 @@ from deamat.core.quantity import Quantity
 from deamat.core.recording import Specimen
 from deamat.core.records import Condition
 from deamat.core.register_bounds import possible
-from deamat.core.register_columns import CONDITION_COLUMNS, Column, numeric_columns
-from deamat.core.register_table import decimal_comma, read_table
+from deamat.core.register_columns import (
+    CONDITION_COLUMNS,
+    TEXT_COLUMNS,
+    Column,
+    numeric_columns,
+)
+from deamat.core.register_table import RegisterTable, decimal_comma, read_table
 from deamat.core.slug import Spellings, label_fault, nearest_label, nearest_slug, slug_fault
 
 REGISTER_FILE = "specimens.csv"
@@ -120,7 +125,7 @@ def read_register(
     ------
     RawFileError : the header itself is unusable (no `specimen` column, unknown unit, ...)
     """
-    table = read_table(data, path, form.text)
+    table = register_table(data, path, form)
     header = table.header
     if not header:
         raise RawFileError(path, "an empty register")
@@ -151,6 +156,17 @@ def read_register(
         specimens.append(specimen)
     sound = () if form.whole and errors else tuple(specimens)
     return Register(sound, tuple(errors), tuple(faulty))
+
+
+def register_table(data: bytes, path: str, form: RegisterForm) -> RegisterTable:
+    """Read the table of a register of this form.
+
+    Raises
+    ------
+    RawFileError : neither text nor a workbook, or no CSV, or several sheets with such a header
+    """
+    words = (*TEXT_COLUMNS, *CONDITION_COLUMNS, *form.notes)
+    return read_table(data, path, form.text, words)
 
 
 @dataclass

@@ -18,7 +18,7 @@ from deamat.core.units import UNITS, UnknownUnit, known, si_factor
 
 CONDITION_COLUMNS = ("age", "cure", "electrode")
 # Text columns of any technique that something reads.
-_TEXT = (
+TEXT_COLUMNS = (
     *("specimen", "material", "file", "format", "encoding", "instrument", "operator"),
     *("cured_on", "tested_on"),
 )
@@ -128,7 +128,7 @@ def numeric_columns(
         if first.setdefault(label, at) != at:
             reason = f"duplicate column: column {first[label]} has the same name"
             raise RawFileError(path, reason, 1, at, label)
-    words = dict.fromkeys((*text, *_TEXT, *CONDITION_COLUMNS, *notes))
+    words = dict.fromkeys((*text, *TEXT_COLUMNS, *CONDITION_COLUMNS, *notes))
     columns: dict[str, Column] = {}
     for at, label in enumerate(header):
         if label in words:

@@ -11,7 +11,7 @@ import codecs
 import csv
 import io
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from deamat.core.errors import RawFileError
@@ -41,24 +41,28 @@ class RegisterTable:
     encoding: str = ""
 
 
-def read_table(data: bytes, path: str, names: Sequence[str]) -> RegisterTable:
+def read_table(
+    data: bytes, path: str, names: Sequence[str], words: Iterable[str] = ()
+) -> RegisterTable:
     """Read a register's bytes.
 
     Parameters
     ----------
     path : relative to `raw/`, for messages
     names : columns that tell the header under the right separator, and the sheet of a workbook
+    words : further names of text columns; all of them may be written in capitals or with blanks
 
     Raises
     ------
     RawFileError : neither text nor a workbook, or no CSV, or several sheets with such a header
     """
+    known = frozenset((*names, *words))
     if data.startswith(ARCHIVE):
-        return _of_workbook(data, path, names)
+        return _of_workbook(data, path, names, known)
     text, encoding = _decoded(data, path)
     told = re.match(r"sep=([,;\t])\r?\n", text)  # a line by which Excel tells the separator
     tables = [
-        _of_text(text, path, separator, encoding)
+        _of_text(text, path, separator, encoding, known)
         for separator in (_SEPARATORS if told is None else told[1])
         if separator == "," or separator in text
     ]
@@ -101,7 +105,9 @@ def _decoded(data: bytes, path: str) -> tuple[str, str]:
         return text, _ANSI
 
 
-def _of_text(text: str, path: str, separator: str, encoding: str) -> RegisterTable:
+def _of_text(
+    text: str, path: str, separator: str, encoding: str, known: Collection[str]
+) -> RegisterTable:
     rows = csv.reader(io.StringIO(text, newline=""), delimiter=separator)
     read: list[tuple[int, list[str]]] = []
     try:
@@ -110,12 +116,14 @@ def _of_text(text: str, path: str, separator: str, encoding: str) -> RegisterTab
         raise RawFileError(path, f"not CSV: {error}", rows.line_num) from error
     if read and read[0][1] in (["sep=" + separator], ["sep=", ""]):
         read = read[1:]
-    return replace(_table(read, separator), encoding=encoding)
+    return replace(_table(read, separator, known), encoding=encoding)
 
 
-def _table(rows: Sequence[tuple[int, list[str]]], separator: str) -> RegisterTable:
+def _table(
+    rows: Sequence[tuple[int, list[str]]], separator: str, known: Collection[str]
+) -> RegisterTable:
     """Take the first row as the header; fields beyond it must be empty, and are dropped."""
-    header = [cell.strip() for cell in rows[0][1]] if rows else []
+    header = _header(rows[0][1], known) if rows else []
     while header and not header[-1]:
         header.pop()
     good = [
@@ -124,20 +132,32 @@ def _table(rows: Sequence[tuple[int, list[str]]], separator: str) -> RegisterTab
     return RegisterTable(tuple(header), tuple(good), separator)
 
 
+def _header(cells: Sequence[str], known: Collection[str]) -> list[str]:
+    """Write `Specimen` and `Tested on` as the known names that they are."""
+    bare = [cell.strip() for cell in cells]
+    plain = [re.sub(r"[ -]+", "_", cell).casefold() for cell in bare]
+    return [
+        word if word in known and word not in bare else cell
+        for word, cell in zip(plain, bare, strict=True)
+    ]
+
+
 def _shortened(row: list[str], columns: int) -> list[str]:
     while len(row) > columns and not row[-1].strip():
         row = row[:-1]
     return row
 
 
-def _of_workbook(data: bytes, path: str, names: Sequence[str]) -> RegisterTable:
+def _of_workbook(
+    data: bytes, path: str, names: Sequence[str], known: Collection[str]
+) -> RegisterTable:
     """Take the one sheet with such a header, below blank rows or a title."""
     found = []
     for sheet, cells in read_sheets(data, path):
         rows = [(at, row) for at, row in enumerate(cells, start=1) if any(map(str.strip, row))]
-        starts = [at for at, (_, row) in enumerate(rows) if set(names) <= {c.strip() for c in row}]
+        starts = [at for at, (_, row) in enumerate(rows) if set(names) <= {*_header(row, known)}]
         if starts:
-            found.append((sheet, _table(rows[starts[0] :], "")))
+            found.append((sheet, _table(rows[starts[0] :], "", known)))
     if len(found) > 1:
         sheets = ", ".join(sheet for sheet, _ in found)
         raise RawFileError(path, f"several sheets are registers: {sheets}", hint="keep one of them")

@@ -42,6 +42,7 @@ def _german(text: str) -> str:
         _german(_PLAIN).encode("cp1252"),
         ("sep=;\r\n" + _german(_PLAIN)).encode("cp1252"),
         _german(_PLAIN).replace("\n", ";;;\r\n").encode("cp1252"),
+        _PLAIN.replace("specimen,material,file,", "Specimen,MATERIAL,File,").encode(),
         _german(_PLAIN).replace("diameter_mm", "Diameter [mm]").encode(),
         (_german(_PLAIN) + ";;;;;\r\n").encode(),
         _PLAIN.replace("\n", ",,\n").encode(),
@@ -125,3 +126,19 @@ def test_the_header_tells_the_separator() -> None:
     table = read_table(text.encode(), _PATH, ["specimen", "material"])
     assert table.separator == ";"
     assert table.rows == ((2, ["s1", "gel-a", "thin, soft, wet, old"]),)
+
+
+def test_known_names_may_be_written_in_capitals_and_with_blanks() -> None:
+    text = "Specimen;Material;File;Diameter [mm];height_mm;Tested on;AGE;Batch\n"
+    read = _read((text + "s1;gel-a;x.csv;28;12;2026-03-12;2 months;7\n").encode())
+    (row,) = read.specimens
+    assert (row.id, row.material, row.file) == ("s1", "gel-a", "demo/compression/x.csv")
+    assert row.conditions == {"age": "2 months"}
+    assert row.notes == {"tested_on": "2026-03-12", "Batch": "7"}
+
+
+def test_a_known_name_in_two_spellings_is_a_duplicate() -> None:
+    with pytest.raises(RawFileError, match="not a known column, but nearly one"):
+        _read(b"specimen,material,diameter_mm,height_mm,age,Age\ns1,gel-a,28,12,1 d,2 d\n")
+    with pytest.raises(RawFileError, match="duplicate column"):
+        _read(b"specimen,material,diameter_mm,height_mm,AGE,Age\ns1,gel-a,28,12,1 d,2 d\n")

@@ -270,7 +270,7 @@ def test_a_folder_that_leads_out_of_raw_is_not_written_to(folders: Folders) -> N
 def test_a_row_goes_into_a_register_of_any_dialect_and_unit(folders: Folders) -> None:
     register = folders.raw / "spring" / "compression" / "specimens.csv"
     register.write_bytes(
-        "specimen;material;file;Diameter [cm];height_mm;comment\r\n"
+        "Specimen;material;File;Diameter [cm];height_mm;comment\r\n"
         "old;gel-z;;2,85;12,5;schön".encode("cp1252")
     )
     (inbox(folders) / "gel-a druck 1.csv").write_bytes(german())
@@ -278,7 +278,7 @@ def test_a_row_goes_into_a_register_of_any_dialect_and_unit(folders: Folders) ->
     fill_in(folders, "compression", {"diameter_mm": "28.4", "height_mm": "12"})
     assert not look(folders).faulty
     assert register.read_bytes().decode("cp1252").splitlines() == [
-        "specimen;material;file;Diameter [cm];height_mm;comment",
+        "Specimen;material;File;Diameter [cm];height_mm;comment",
         "old;gel-z;;2,85;12,5;schön",
         "gel-a druck 1;gel-a;gel-a/gel-a-druck-1.csv;2,84;12;",
     ]

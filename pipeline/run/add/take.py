@@ -14,9 +14,9 @@ from deamat.core.config import Config
 from deamat.core.csv_cells import csv_text
 from deamat.core.errors import RawFileError
 from deamat.core.number_grammar import is_number
-from deamat.core.register import read_register, split_sheet
+from deamat.core.register import read_register, register_table, split_sheet
 from deamat.core.register_columns import Column, numeric_columns, si_name, split_unit
-from deamat.core.register_table import RegisterTable, decimal_comma, read_table
+from deamat.core.register_table import RegisterTable, decimal_comma
 from deamat.core.slug import nearest_slug, slug_fault
 from deamat.core.technique import AnyTechnique
 from deamat.core.units import si_factor
@@ -109,7 +109,7 @@ def _appended(place: Place, cells: Mapping[str, str], config: Config) -> bytes:
     elif any(place.register.with_suffix(ending).is_file() for ending in (".xlsx", ".ods")):
         reason = "its register is a workbook, which this program does not write"
         raise RawFileError(place.name, reason, hint="save it as CSV, or write the row there")
-    table = read_table(old, place.name, form.text)
+    table = register_table(old, place.name, form)
     if table.encoding == "utf-16":
         raise RawFileError(place.name, "its register is in UTF-16", hint="save it as UTF-8 CSV")
     end = b"\r\n" if b"\r\n" in old else b"\n"
@@ -124,7 +124,7 @@ def _appended(place: Place, cells: Mapping[str, str], config: Config) -> bytes:
         new, place.name, place.campaign, place.technique.key, place.technique.required,
         config.instruments.gauges, form,
     )  # fmt: skip
-    last = max((line for line, _ in read_table(new, place.name, form.text).rows), default=0)
+    last = max((line for line, _ in register_table(new, place.name, form).rows), default=0)
     for _, fault in read.errors:
         if fault.line == last:
             raise fault
