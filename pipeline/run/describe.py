@@ -32,7 +32,9 @@ def describe(
     """
     summaries = [g.summary for g in groups if g.summary]
     records = [r for s in summaries for r in s.records]
+    laws = [law for s in summaries for law in s.laws]
     refusals = [r for s in summaries for r in s.refusals]
+    excluded = [e for s in run.surveys for e in s.excluded]
     counts = Counter(f.status for f in files)
     return {
         "exit_code": FAILURE if run.failures else int(any(f.violates for f in files)),
@@ -60,11 +62,9 @@ def describe(
             }
             for r in refusals
         ],
-        "flags": listed(records, [law for s in summaries for law in s.laws]),
+        "flags": listed(records, laws),
         "default_limits": _default_limits(groups),
-        "vanished": vanished(
-            before, records, refusals, files, [e for s in run.surveys for e in s.excluded]
-        ),
+        "vanished": vanished(before, [*records, *laws], refusals, files, excluded),
         "waiting": _waiting(files),
         "rejected": [
             {"path": f.path, "line": f.line, "column": f.column, "reason": str(f)}

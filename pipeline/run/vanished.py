@@ -13,12 +13,16 @@ from typing import Any
 
 from deamat.core.card_lists import Excluded
 from deamat.core.ledger import FileEntry
-from deamat.core.records import Condition, PropertyRecord, Refusal
+from deamat.core.records import Condition, Law, PropertyRecord, Refusal
 from deamat.materials.database import DATABASE_FILE
 
 _QUERY = """
-SELECT p.id, p.material, p.key, p.campaign, p.conditions, o.path, o.register, o.specimen
-FROM properties p LEFT JOIN origins o ON o.id = p.id ORDER BY p.id, o.position
+WITH entries AS (
+    SELECT id, material, key, campaign, conditions, 0 AS is_law FROM properties
+    UNION ALL SELECT id, material, key, campaign, conditions, 1 FROM laws
+)
+SELECT e.id, e.material, e.key, e.campaign, e.conditions, e.is_law, o.path, o.register, o.specimen
+FROM entries e LEFT JOIN origins o ON o.id = e.id ORDER BY e.id, o.position
 """
 
 
@@ -29,12 +33,14 @@ class Value:
     Parameters
     ----------
     words : its conditions that are words (age, cure); numbers are means, which move a little
+    is_law : it is a law of the property
     """
 
     material: str
     key: str
     campaign: str
     words: tuple[tuple[str, str], ...]
+    is_law: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,8 +61,11 @@ def published(release: Path | None) -> Published:
     counts: Counter[Value] = Counter()
     rests_on: dict[Value, list[tuple[str, str]]] = {}
     seen: set[int] = set()
-    for number, material, key, campaign, conditions, path, register, specimen in _rows(release):
-        value = _value(material, key, campaign, json.loads(conditions))
+    for number, material, key, campaign, conditions, is_law, path, register, specimen in _rows(
+        release
+    ):
+        words = _words(json.loads(conditions))
+        value = Value(material, key, campaign, words, bool(is_law))
         if number not in seen:
             seen.add(number)
             counts[value] += 1
@@ -78,7 +87,7 @@ def _rows(release: Path | None) -> list[tuple[Any, ...]]:
 
 def vanished(
     before: Published,
-    records: Iterable[PropertyRecord],
+    entries: Iterable[PropertyRecord | Law],
     refusals: Sequence[Refusal],
     files: Iterable[FileEntry],
     excluded: Iterable[Excluded] = (),
@@ -88,11 +97,14 @@ def vanished(
     Parameters
     ----------
     before : of the last release
-    records, refusals : of this run
+    entries, refusals : records, laws and refusals of this run
     files : its account
     excluded : specimens that it left out
     """
-    now = Counter(_value(r.material, r.key, r.campaign, r.conditions) for r in records)
+    now = Counter(
+        Value(e.material, e.key, e.campaign, _words(e.conditions), isinstance(e, Law))
+        for e in entries
+    )
     account = {entry.path: entry for entry in files}
     left_out = {(e.campaign, e.material, e.specimen): e for e in excluded}
     gone = []
@@ -102,7 +114,7 @@ def vanished(
             said = ", ".join(word for _, word in value.words)
             gone.append({
                 "material": value.material,
-                "key": value.key,
+                "key": f"law of {value.key}" if value.is_law else value.key,
                 "campaign": value.campaign,
                 "conditions": said,
                 "lost": lost,
@@ -112,9 +124,8 @@ def vanished(
     return gone
 
 
-def _value(material: str, key: str, campaign: str, conditions: Mapping[str, Condition]) -> Value:
-    words = tuple(sorted((k, v) for k, v in conditions.items() if isinstance(v, str)))
-    return Value(material, key, campaign, words)
+def _words(conditions: Mapping[str, Condition]) -> tuple[tuple[str, str], ...]:
+    return tuple(sorted((k, v) for k, v in conditions.items() if isinstance(v, str)))
 
 
 def _why(

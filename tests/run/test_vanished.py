@@ -9,7 +9,7 @@ import pytest
 from deamat.run import summary
 from deamat.run.folders import Folders
 from deamat.run.register import register
-from tests.run.conftest import MATERIALS, run
+from tests.run.conftest import MATERIALS, run, twin_rows, write_campaign
 
 pytestmark = pytest.mark.usefixtures("quick_figures")
 
@@ -70,6 +70,24 @@ def test_an_excluded_value_says_so(folders: Folders) -> None:
     assert why == other
     assert why.startswith("demo/compression/")
     assert why.endswith(" is excluded: slipped")
+
+
+def test_a_law_is_named_beside_the_values_that_it_gave(folders: Folders) -> None:
+    rows = [r for r in twin_rows("viscosity/specimens.csv") if r["material"] == MATERIALS[0]]
+    write_campaign(rows, folders.raw / "pots", "viscosity/specimens.csv")
+    register(folders.raw, "pots", accept_all=True)
+    run(folders)
+    (folders.config / "exclusions.toml").write_text(
+        "".join(
+            f'[[exclude]]\nspecimen = "pots/viscosity/{row["specimen"]}"\nreason = "old batch"\n'
+            for row in rows
+        )
+    )
+    gone = run(folders)["vanished"]
+    assert {value["campaign"] for value in gone} == {"pots"}
+    assert {"law of viscosity", "viscosity"} <= {value["key"] for value in gone}
+    (law,) = [value for value in gone if value["key"] == "law of viscosity"]
+    assert law["why"].endswith("is excluded: old batch")
 
 
 def test_one_value_of_two_conditions_is_told_by_them(folders: Folders) -> None:
