@@ -33,8 +33,9 @@ from deamat.core.register_table import RegisterTable, decimal_comma, read_table
 from deamat.core.slug import Spellings, label_fault, nearest_label, nearest_slug, slug_fault
 
 REGISTER_FILE = "specimens.csv"
+ENDINGS = (".csv", ".xlsx", ".ods")  # of a register, as text or as a workbook
 REGISTER_FILES = tuple(
-    stem + ending for stem in ("specimens", "observations") for ending in (".csv", ".xlsx", ".ods")
+    stem + ending for stem in ("specimens", "observations") for ending in ENDINGS
 )
 
 DATE_COLUMNS = ("cured_on", "tested_on")

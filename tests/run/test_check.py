@@ -9,6 +9,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from deamat.commands.check import check
+from deamat.core.sheets import write_workbook
 from deamat.formats.blocks import block_in
 from deamat.formats.rawfile import RawFile
 from deamat.run.check import Asked, Checked, check_files
@@ -88,6 +89,18 @@ def test_a_register_beside_the_file_gives_its_row(folder: Path) -> None:
     )  # fmt: skip
     (reading,) = look(path).readings
     assert reading.row == "c/compression/specimens.csv, line 2"
+    assert reading.values[0].name == "compressive_modulus"
+
+
+def test_a_workbook_beside_the_file_is_its_register_as_well(folder: Path) -> None:
+    path = put(folder, "c/compression/a.csv", CURVE)
+    rows: list[list[str | float]] = [
+        ["Specimen", "material", "file", "Diameter [mm]", "height_mm"],
+        ["s1", "m", "a.csv", 28.6, 12.5],
+    ]
+    (path.parent / "specimens.xlsx").write_bytes(write_workbook({"Specimens": rows}))
+    (reading,) = look(path).readings
+    assert reading.row == "c/compression/specimens.xlsx, line 2"
     assert reading.values[0].name == "compressive_modulus"
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from deamat.core.config import Config
 from deamat.core.errors import ConfigError
-from deamat.core.register import SHEET, Register, read_register
+from deamat.core.register import ENDINGS, SHEET, Register, read_register
 from deamat.core.technique import AnyTechnique
 from deamat.formats.rawfile import read_raw
 from deamat.run.add.rows import Known
@@ -90,7 +90,7 @@ def registers_of(
     ------
     RawFileError : one cannot be read
     """
-    for ending in (".csv", ".xlsx", ".ods"):
+    for ending in ENDINGS:
         name = technique.register.file.removesuffix(".csv") + ending
         file = f"{campaign}/{technique.key}/{name}"
         if (raw / file).is_file():

@@ -14,7 +14,7 @@ from deamat.core.config import Config
 from deamat.core.csv_cells import csv_text
 from deamat.core.errors import RawFileError
 from deamat.core.number_grammar import is_number
-from deamat.core.register import read_register, register_table, split_sheet
+from deamat.core.register import ENDINGS, read_register, register_table, split_sheet
 from deamat.core.register_columns import Column, numeric_columns, si_name, split_unit
 from deamat.core.register_table import RegisterTable, decimal_comma
 from deamat.core.slug import nearest_slug, slug_fault
@@ -106,7 +106,7 @@ def _appended(place: Place, cells: Mapping[str, str], config: Config) -> bytes:
     old = csv_text([header_of(place.technique)]).encode()
     if place.register.is_file():
         old = place.register.read_bytes()
-    elif any(place.register.with_suffix(ending).is_file() for ending in (".xlsx", ".ods")):
+    elif any(place.register.with_suffix(ending).is_file() for ending in ENDINGS):
         reason = "its register is a workbook, which this program does not write"
         raise RawFileError(place.name, reason, hint="save it as CSV, or write the row there")
     table = register_table(old, place.name, form)

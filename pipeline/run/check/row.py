@@ -12,7 +12,7 @@ from deamat.core.campaign import CAMPAIGN_FILE, CampaignInfo, load_campaign
 from deamat.core.config import Config
 from deamat.core.errors import RawFileError
 from deamat.core.recording import Specimen
-from deamat.core.register import SHEET, read_register
+from deamat.core.register import ENDINGS, SHEET, read_register
 from deamat.core.technique import AnyTechnique
 from deamat.formats.rawfile import read_raw
 
@@ -51,13 +51,14 @@ def place_of(path: Path, techniques: Mapping[str, AnyTechnique]) -> Place:
     for folder in whole.parents:
         if folder.name not in techniques:
             continue
-        register = folder / techniques[folder.name].register.file
+        named = folder / techniques[folder.name].register.file
+        register = next((r for r in map(named.with_suffix, ENDINGS) if r.is_file()), None)
         info = _UNKNOWN
         if (folder.parent / CAMPAIGN_FILE).is_file():
             data = read_raw(folder.parent, CAMPAIGN_FILE)
             info = load_campaign(folder.parent, data).info
         name = whole.relative_to(folder).as_posix()
-        return Place(folder.name, name, register if register.is_file() else None, info)
+        return Place(folder.name, name, register, info)
     return Place("", path.name, None, _UNKNOWN)
 
 
