@@ -70,6 +70,7 @@ SEVERITY_OF: dict[str, Severity] = {
     "law-ends": "warning",
     "level-declared": "info",
     "loss-unresolved": "info",
+    "low-frequency-rise": "warning",
     "low-outlier": "warning",
     "mac-roman": "info",
     "meter-limit": "info",

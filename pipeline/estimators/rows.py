@@ -14,6 +14,7 @@ _RUN = 5  # neighbouring rows that are hashed together
 _KEPT = 192  # smallest hashes of a recording: shared fractions of 5 % still show
 _ODD = np.uint64(0x9E3779B97F4A7C15)
 _SHIFT = np.uint64(29)
+_SET_STEPS = 4  # different ones: none, up, down, and the last one
 _ROUNDED = 4.2  # quanta: rounding alone moves a third difference by at most four
 
 
@@ -42,7 +43,10 @@ def sketch(columns: Sequence[FloatArray]) -> Sketch:
 
     Source: A. Z. Broder, Compression and Complexity of Sequences (1997) 21, for bottom-k sketches.
     """
+    # a constant column is hashed with the others: it may not be constant in a sibling
     telling = [column for column in columns if column.size >= _RUN and not _counts(column)]
+    if not any(np.ptp(column) > 0.0 for column in telling):
+        telling = []
     if not telling:
         return Sketch(b"", 0)
     rows = np.zeros(telling[0].size, dtype=np.uint64)
@@ -95,6 +99,8 @@ def has_noise(column: FloatArray) -> bool:
     if column.size < 2 * _RUN:
         return False
     quantum = _quantum(column)
+    if quantum and np.unique(np.rint(np.diff(column) / quantum)).size <= _SET_STEPS:
+        return False  # a voltage that is set in steps
     bends = np.abs(np.diff(column, n=3))
     return float(np.median(bends)) > _ROUNDED * quantum
 
@@ -102,6 +108,8 @@ def has_noise(column: FloatArray) -> bool:
 def _counts(column: FloatArray) -> bool:
     """Say whether a column steps evenly, as a running number does: it tells no tests apart."""
     steps = column[1:] - column[:-1]
+    if steps[0] == 0.0:
+        return False
     return bool((np.abs(steps - steps[0]) <= 1e-6 * abs(steps[0])).all())
 
 

@@ -49,6 +49,16 @@ def test_a_channel_at_rest_and_a_running_number_tell_nothing() -> None:
     assert sketch([]).count == 0
 
 
+def test_a_channel_that_is_constant_in_one_of_two_files_hides_no_common_rows() -> None:
+    ramp = 50.0 * np.arange(150.0)
+    one = [np.append(ramp, np.zeros(5)), np.full(155, 2e-6)]
+    other = [
+        np.append(ramp, np.full(30, 0.6 * ramp[-1])),
+        np.append(one[1][:150], np.full(30, 2e-2)),
+    ]
+    assert shared_fraction(sketch(one), sketch(other)) > 0.9
+
+
 def test_noise_is_more_than_the_last_digit() -> None:
     x = np.linspace(0.0, 1.0, 200)
     smooth = np.round(3.0 * x - 0.4 * x**2, 4)
@@ -56,4 +66,5 @@ def test_noise_is_more_than_the_last_digit() -> None:
     assert not has_noise(1e-3 * smooth)
     assert not has_noise(np.repeat(np.arange(20.0), 10))
     assert not has_noise(np.zeros(200))
+    assert not has_noise(np.append(np.repeat(500.0 * np.arange(1, 19), 2), [0.0, 0.0]))
     assert has_noise(np.round(smooth + np.random.default_rng(1).normal(0.0, 3e-4, 200), 4))

@@ -28,6 +28,8 @@ _LEAST = 0.01  # rise over the first decade, below which nothing is fitted
 _TOLD = 5.0  # standard errors
 _LOSS_WITH_IT = 0.1  # of the rise, at least, that the loss rises by over a decade
 _MOST = 0.6  # of the loss
+_STEEPER = 2.0  # times the rise over the next decade: as f^-0.3 and steeper
+_NEAR_DECADES = 0.05
 _CLOSE = 0.99  # squared correlation of the loss with 1/f
 
 
@@ -74,12 +76,37 @@ def polarisation(
     if x.size < _FEWEST_OF_ALL:
         return None
     decade = min(int(np.searchsorted(x, math.log(10.0) - 1e-2)), x.size - 1)
-    rise, more_loss = float(c[0] / c[decade]) - 1.0, float(d[0] - d[decade])
+    rise = float(c[0] / c[decade]) - 1.0
+    more_loss = float(d[0] * c[0] / c[decade] - d[decade])  # of C'', as the rise is of C'
     if rise < _LEAST or more_loss < _LOSS_WITH_IT * rise:
         return None
     height, u, exponent = _fit(x, c) if x.size >= _FEWEST else _of_three(x, c)
     told = height > _TOLD * u and exponent > _EXPONENTS[0]  # a slower rise is a relaxation's
     return Rise(height, exponent, at_Hz) if told else None
+
+
+def steepening(
+    frequency_Hz: FloatArray, capacitance_F: FloatArray, loss: FloatArray, at_Hz: float
+) -> tuple[float, float]:
+    """Return by how much C' rises over the decade above a frequency, and over the next one `[1]`.
+
+    Both zero unless C'' rises with it, the first is twice the second at least (a permittivity that
+    depends on ln f rises by as much in either), and the sweep reaches over both.
+
+    Parameters
+    ----------
+    frequency_Hz : rising, shape (n,)
+    capacitance_F, loss : C' and D, shape (n,) each
+    at_Hz : where the first decade begins
+    """
+    x = np.log10(frequency_Hz / at_Hz)
+    if x[0] > _NEAR_DECADES or x[-1] < 2.0 - _NEAR_DECADES:
+        return 0.0, 0.0
+    c = np.interp([0.0, 1.0, 2.0], x, capacitance_F)
+    lossy = np.interp([0.0, 1.0], x, capacitance_F * loss)
+    first, second = float(c[0] / c[1]) - 1.0, float(c[1] / c[2]) - 1.0
+    together = float(lossy[0] - lossy[1]) > _LOSS_WITH_IT * first * float(c[1])
+    return (first, second) if together and first > _STEEPER * max(second, 0.0) else (0.0, 0.0)
 
 
 def _of_three(x: FloatArray, c: FloatArray) -> tuple[float, float, float]:

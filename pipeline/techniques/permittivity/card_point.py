@@ -19,6 +19,7 @@ from deamat.techniques.permittivity.faults import (
     first_sweep,
     polarisation_told,
     polarised,
+    rise_flags,
     smooth,
 )
 from deamat.techniques.permittivity.spectrum import Spectrum
@@ -102,7 +103,7 @@ def _free_of_polarisation(
     """
     rise = polarised(spectrum, target_Hz, config)
     if rise is None:
-        return target_Hz, Found(), ""
+        return target_Hz, Found(flags=rise_flags(spectrum, target_Hz, config)), ""
     told, at, not_at = polarisation_told(rise), target_Hz, ""
     if rise.height > config.max_polarisation:
         top = float(spectrum.frequency_Hz[-1]) * (1.0 + config.frequency_tolerance)

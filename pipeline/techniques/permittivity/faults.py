@@ -11,8 +11,8 @@ from deamat.core.arrays import FloatArray
 from deamat.core.errors import FitRefused
 from deamat.core.quantity import Contribution
 from deamat.core.records import Flag
-from deamat.estimators.dielectric.low_frequency import Rise, conducted, polarisation
-from deamat.estimators.dielectric.repeats import same_frequency, spread
+from deamat.estimators.dielectric.low_frequency import Rise, conducted, polarisation, steepening
+from deamat.estimators.dielectric.repeats import drift_between, same_frequency, spread
 from deamat.estimators.dielectric.smoothness import NONE, Jumps, jumps
 from deamat.techniques.permittivity.config import PermittivityConfig
 from deamat.techniques.permittivity.spectrum import Spectrum
@@ -63,12 +63,18 @@ def first_sweep(
     FitRefused : they are farther apart than is allowed
     """
     group = same_frequency(spectrum.frequency_Hz)
-    if int(group[-1]) + 1 == group.size:
+    once = int(group[-1]) + 1 == group.size
+    if once and not spectrum.sweep.any():
         return spectrum, Found()
     c, d = spectrum.capacitance_F.real, spectrum.loss
-    near = group == group[np.abs(np.log(spectrum.frequency_Hz / target_Hz)).argmin()]
-    drift = max(float(np.median(spread(np.log(c), group))), float(np.ptp(np.log(c[near]))))
-    drift_of_loss = max(float(np.median(spread(d, group))), float(np.ptp(d[near])))
+    if once:
+        f, sweep = spectrum.frequency_Hz, spectrum.sweep
+        drift = float(np.median(drift_between(f, np.log(c), sweep)))
+        drift_of_loss = float(np.median(drift_between(f, d, sweep)))
+    else:
+        near = group == group[np.abs(np.log(spectrum.frequency_Hz / target_Hz)).argmin()]
+        drift = max(float(np.median(spread(np.log(c), group))), float(np.ptp(np.log(c[near]))))
+        drift_of_loss = max(float(np.median(spread(d, group))), float(np.ptp(d[near])))
     if drift <= config.repeat_tolerance:
         return spectrum, Found()
     several = int(spectrum.sweep.max()) + 1
@@ -235,9 +241,32 @@ def polarised(spectrum: Spectrum, target_Hz: float, config: PermittivityConfig) 
     rise = polarisation(f, c, spectrum.loss, target_Hz)
     if rise is None:
         return None
-    limit = float(spectrum.limit[np.abs(np.log(f / target_Hz)).argmin()])
-    least = max(config.polarisation_flag, 3.0 * limit / _LIMIT_TO_SIGMA)
+    least = _told_from_meter(spectrum, target_Hz, config)
     return rise if rise.height > least / min(rise.exponent, 1.0) ** 2 else None
+
+
+def _told_from_meter(spectrum: Spectrum, target_Hz: float, config: PermittivityConfig) -> float:
+    """Least rise towards a frequency that the meter's limit of error cannot feign `[1]`."""
+    limit = float(spectrum.limit[np.abs(np.log(spectrum.frequency_Hz / target_Hz)).argmin()])
+    return max(config.polarisation_flag, 3.0 * limit / _LIMIT_TO_SIGMA)
+
+
+def rise_flags(spectrum: Spectrum, at_Hz: float, config: PermittivityConfig) -> tuple[Flag, ...]:
+    """Flag a rise towards low frequency that is too slow to be told from a relaxation."""
+    first, second = steepening(
+        spectrum.frequency_Hz, spectrum.capacitance_F.real, spectrum.loss, at_Hz
+    )
+    if first <= _told_from_meter(spectrum, at_Hz, config):
+        return ()
+    return (
+        Flag(
+            "low-frequency-rise",
+            f"capacitance and loss rise together towards low frequency, by {100 * first:.2g} % "
+            f"over the decade above {at_Hz:g} Hz and by {100 * second:.2g} % over the next: "
+            "electrode polarisation, or a relaxation below the sweep; the value is what was "
+            "measured, both included",
+        ),
+    )
 
 
 def polarisation_told(rise: Rise) -> str:

@@ -112,7 +112,9 @@ def spectrum_of(
     if np.count_nonzero(good) < config.min_points:
         raise FitRefused(
             f"{np.count_nonzero(good)} of {frequency.size} points are usable, "
-            f"{config.min_points} are needed; measure again in a range that the meter holds",
+            f"{config.min_points} are needed (min_points of [permittivity] in "
+            "config/methods.toml): fewer do not show a point that is off, or a step; measure at "
+            "more frequencies, in a range that the meter holds",
             {"points": int(np.count_nonzero(good)), "points_needed": config.min_points},
         )
     order = np.flatnonzero(good)[np.argsort(frequency[good], kind="stable")]

@@ -151,6 +151,33 @@ def test_a_large_one_moves_the_value_to_a_frequency_free_of_it(height: float) ->
         assert "card_frequency_Hz of [permittivity] in config/methods.toml" in refusal.reason
 
 
+@pytest.mark.parametrize("height", [1.0, 3.0, 10.0])
+def test_polarisation_that_multiplies_the_capacitance_is_found(height: float) -> None:
+    rise = height * (FREQUENCY / 10) ** -1.2
+    seen = capacitor(2.7)[0].real * (1 + rise) * (1 - 1j * (0.004 + 0.2 * rise / (1 + rise)))
+    measured = reduce(recording(seen), context(machine=CHECKED), micrometer_force_N=NO_FORCE)
+    assert card(measured)[0] == pytest.approx(2.7, rel=0.01)
+    assert measured.values[0].conditions != {"frequency_Hz": 10.0}
+
+
+@pytest.mark.parametrize(("exponent", "flagged"), [(0.5, True), (0.35, True), (0.1, False)])
+def test_a_rise_as_slow_as_a_relaxations_is_flagged_and_kept(
+    exponent: float, flagged: bool
+) -> None:
+    rise = 0.3 * (FREQUENCY / 10) ** -exponent
+    seen = capacitor(2.7)[0].real * (1 + rise) * (1 - 1j * (0.004 + 0.3 * rise))
+    measured = reduce(recording(seen), context(machine=CHECKED), micrometer_force_N=NO_FORCE)
+    assert card(measured)[0] == pytest.approx(2.7 * 1.3, rel=1e-3)
+    assert ("low-frequency-rise" in names(measured)) == flagged
+
+
+def test_a_permittivity_that_depends_on_the_logarithm_of_frequency_is_not_flagged() -> None:
+    slope = 1 - 0.05 * np.log10(FREQUENCY / 10)
+    seen = capacitor(2.7)[0].real * slope * (1 - 1j * (0.03 + 0.01 * slope))
+    measured = reduce(recording(seen), context(machine=CHECKED), micrometer_force_N=NO_FORCE)
+    assert "low-frequency-rise" not in names(measured)
+
+
 def test_a_sweep_that_polarisation_fills_is_refused() -> None:
     assert "no stated frequency of the sweep is free of it" in refused(
         polarised(0.4, np.logspace(1, 2.2, 25))
@@ -179,6 +206,16 @@ def test_sweeps_that_agree_are_one(back: bool) -> None:
     measured = sweeps(1.0, 1.001, back=back)
     assert card(measured)[0] == pytest.approx(2.7 * 1.0005)
     assert names(measured) == names(sweeps(1.0))
+
+
+def test_a_second_sweep_at_other_frequencies_is_compared_too() -> None:
+    f = np.concatenate([FREQUENCY, 1.1 * FREQUENCY])
+    apart = np.repeat([1.0, 0.97], FREQUENCY.size)
+    measured = measure(apart, f)
+    assert card(measured)[0] == pytest.approx(2.7)
+    assert "2 sweeps in one file differ by 3" in flag(measured, "several-sweeps")
+    assert "2 sweeps in one file differ by 11 %" in refused(measure(apart**3.7, f))
+    assert "several-sweeps" not in names(measure(np.ones(f.size), f))
 
 
 @pytest.mark.parametrize("back", [False, True])

@@ -52,7 +52,9 @@ def test_an_over_range_point_at_the_cards_frequency_is_not_replaced(
 def test_too_few_points_are_refused() -> None:
     measured = reduce(recording(capacitor(2.63), over_range=tuple(range(27))))
     assert refused(measured) == (
-        "4 of 31 points are usable, 5 are needed; measure again in a range that the meter holds"
+        "4 of 31 points are usable, 5 are needed (min_points of [permittivity] in "
+        "config/methods.toml): fewer do not show a point that is off, or a step; measure at more "
+        "frequencies, in a range that the meter holds"
     )
 
 
