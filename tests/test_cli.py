@@ -43,7 +43,8 @@ def test_a_run_and_what_can_be_asked_of_it(folders: Folders) -> None:
 
 def test_a_rejected_file_ends_with_one_and_its_place(folders: Folders) -> None:
     path = curves(folders)[0]
-    path.write_bytes(path.read_bytes().replace(b"\t", b"\tOVER", 30))
+    labels, ends, rows = path.read_bytes().partition(b"Time\r\n")
+    path.write_bytes(labels + ends + rows.replace(b"\t", b"\tOVER", 30))
     done = deamat(folders, "all", "--workers", "1")
     assert done.returncode == 1
     assert f"REJECTED   demo/compression/{path.parent.name}/{path.name}, line" in done.stdout
