@@ -19,7 +19,16 @@ _FRACTION = re.compile(rb"(?<![0-9])0[0-9]*,|,[0-9]{1,2}(?![0-9])|,[0-9]{4}")
 
 
 class Ambiguous(ValueError):
-    """Both decimal marks fit, and mean different numbers; holds the cell that shows it."""
+    """Both decimal marks fit, and mean different numbers.
+
+    Parameters
+    ----------
+    cell : the one that shows it
+    """
+
+    def __init__(self, cell: str) -> None:
+        super().__init__(cell)
+        self.cell = cell
 
 
 def grouping(cells: Iterable[str]) -> bool:

@@ -173,7 +173,7 @@ def _values(
         if decimal == "." and not choice.decimal:
             _insist_on_points(list(zip(*split, strict=True)), choice)
     except Ambiguous as error:
-        cell, mark = str(error), "," if "," in str(error) else "."
+        cell, mark = error.cell, "," if "," in error.cell else "."
         raise RawFileError(
             file.path, f"two readings fit: {cell} is {cell.replace(',', '.')} with a decimal "
             f"{_MARKS[mark]} and {cell.replace(mark, '')} with a {_MARKS[mark]} between thousands",

@@ -134,11 +134,11 @@ class _Loop:
         for line in _told(document):
             self.say(line)
 
-    def _fails(self, reason: str) -> None:
+    def _fails(self, said: str) -> None:
         """Say once why there is no run, and try again later."""
-        if reason != self.failing:
-            self.say(f"NOT RUN    {reason}; trying again every {_AGAIN_s:g} s")
-        self.failing = reason
+        if said != self.failing:
+            self.say(f"NOT RUN    {said}; trying again every {_AGAIN_s:g} s")
+        self.failing = said
         self.again_s = time.monotonic() + _AGAIN_s
 
     def _hold(self, seen: Mapping[str, Stat]) -> dict[str, Stat]:
