@@ -17,7 +17,7 @@ from deamat.core.errors import ConfigError
 from deamat.run.folders import Folders
 from deamat.run.published import listing
 from deamat.run.register import register
-from deamat.run.release import Release
+from deamat.run.release import Release, _same
 from deamat.run.state import State
 from tests.run.conftest import curves, run
 
@@ -222,3 +222,19 @@ def test_three_releases_before_the_current_one_are_kept(tmp_path: Path) -> None:
     kept = sorted(p.name for p in (tmp_path / "releases").iterdir())
     assert kept == [*names[2:], "current", "notes"]
     assert (tmp_path / "cards/card").read_text() == names[-1]
+
+
+def test_two_folders_are_the_same_with_the_same_files_of_the_same_bytes_alone(
+    tmp_path: Path,
+) -> None:
+    one, other = tmp_path / "one", tmp_path / "other"
+    for folder in (one, other):
+        (folder / "cards").mkdir(parents=True)
+        (folder / "cards" / "gel-a.json").write_text("{}")
+    assert _same(one, other)
+    (other / "stray").write_text("")
+    assert not _same(one, other)
+    assert not _same(other, one)
+    (other / "stray").unlink()
+    (other / "cards" / "gel-a.json").write_text("[]")
+    assert not _same(one, other)
