@@ -13,7 +13,6 @@ from deamat.core.errors import CardError, MissingProperty
 from deamat.core.quantity import Quantity
 from deamat.core.records import Flag
 from deamat.materials.card import MaterialCard, read_card
-from deamat.materials.document import canonical_json
 from tests.materials import samples
 from tests.materials.samples import aged, card, modulus, refusal, viscosity_law
 
@@ -292,16 +291,6 @@ def test_an_entry_that_does_not_fit_is_named_by_its_place(
     document["release"] = str(caught.value).split()[6].rstrip(",")  # as a forger would
     with pytest.raises(CardError, match=message):
         MaterialCard.from_document(document)
-
-
-def test_what_is_hashed_is_sorted_text_on_one_line_in_its_own_letters() -> None:
-    assert canonical_json({"unit": "µm", "at": [1, 2.5]}) == '{"at":[1,2.5],"unit":"µm"}'
-
-
-def test_what_json_cannot_say_is_never_written() -> None:
-    for number in (math.nan, math.inf):
-        with pytest.raises(ValueError, match="not JSON compliant"):
-            canonical_json({"value": number})
 
 
 def test_a_lower_bound_is_never_given_as_a_bare_number() -> None:

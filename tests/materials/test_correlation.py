@@ -10,6 +10,7 @@ from deamat.core.card_lists import JointFit
 from deamat.core.quantity import Contribution, Quantity
 from deamat.core.records import PropertyRecord
 from deamat.materials.correlation import (
+    _told_from_zero,
     coefficient_of,
     correlation,
     correlations_of,
@@ -85,6 +86,26 @@ def test_the_scatter_of_the_same_specimens_counts_where_it_is_told_from_chance()
     assert correlation(scattered("compressive_modulus", values[:3]), three) == (0.0, "")
     equal = scattered("compressive_modulus_toe_compensated", (2.0,) * 5)
     assert correlation(one, equal) == (0.0, "")
+    assert correlation(one, replace(near, budget=())) == (0.0, "")  # of nothing known
+
+
+@pytest.mark.parametrize(
+    ("pairs", "critical"), [(4, 0.990), (5, 0.959), (6, 0.917), (10, 0.765), (22, 0.537)]
+)
+def test_a_correlation_is_told_from_zero_beyond_the_tabulated_value(
+    pairs: int, critical: float
+) -> None:
+    """Two-sided at 1 %: R. A. Fisher, F. Yates, Statistical Tables (1938), table VI."""
+    for sign in (-1.0, 1.0):
+        assert _told_from_zero(sign * (critical + 0.001), pairs)
+        assert not _told_from_zero(sign * (critical - 0.001), pairs)
+
+
+def test_the_three_greatest_of_the_errors_that_two_values_share_are_named() -> None:
+    lines = [Contribution(name, u, True) for name, u in zip("abcd", (1, 4, 2, 3), strict=True)]
+    one = value("compressive_modulus", *lines)
+    other = value("compressive_modulus_toe_compensated", *lines)
+    assert correlation(one, other)[1] == "both rest on b and d and c"
 
 
 FIT = JointFit(
@@ -121,8 +142,9 @@ def test_values_of_two_states_are_not_listed() -> None:
     warm = value("tensile_modulus", CELL, conditions={**fresh, "temperature_K": 350.0})
     cool = value("compressive_modulus", CELL, conditions={**fresh, "temperature_K": 295.0})
     assert correlations_of((cool, warm), []) == ()
-    near = replace(warm, conditions={**fresh, "temperature_K": 296.0})
-    assert len(correlations_of((cool, near), [])) == 1
+    for kelvin, listed in ((296.0, 1), (300.0, 1), (301.0, 0)):
+        near = replace(warm, conditions={**fresh, "temperature_K": kelvin})
+        assert len(correlations_of((cool, near), [])) == listed
 
 
 def test_conditions_are_told_where_they_tell_values_apart() -> None:
@@ -134,3 +156,6 @@ def test_conditions_are_told_where_they_tell_values_apart() -> None:
     assert [pair.other_conditions for pair in pairs] == [{"age": s["age"]} for s in states]
     assert coefficient_of(pairs, records[0], records[2]) == pairs[0].coefficient
     assert coefficient_of(pairs, records[0], records[3]) == 0.0
+    assert coefficient_of(pairs[:1], records[1], records[3]) == 0.0
+    third = value("tensile_modulus", CELL, conditions=states[0])
+    assert coefficient_of(pairs, records[0], third) == 0.0

@@ -57,6 +57,17 @@ def test_a_manifest_is_held_against_every_file(tmp_path: Path) -> None:
     for path in ("demo/gone.md", "demo/compression/c.csv"):
         assert told[path] == ("missing", "rejected", "missing")
         assert seen.entries[path].reason == "in the manifest, but not there"
+        assert (seen.entries[path].sha256, seen.entries[path].size) == ("", 0)
+
+
+def test_of_two_registers_of_a_technique_neither_is_read(tmp_path: Path) -> None:
+    two = {"compression/specimens.csv": GOOD, "compression/specimens.ods": GOOD}
+    seen = look(tmp_path / "demo", {**FILES, **two})
+    for one, other in zip(two, reversed(two), strict=True):
+        entry = seen.entries[f"demo/{one}"]
+        assert entry.status == "rejected"
+        assert f"two registers of compression: this one and demo/{other}" in entry.reason
+    assert seen.specimens == []
 
 
 @pytest.mark.parametrize(
