@@ -207,6 +207,8 @@ def _within_range(values: FloatArray) -> bool:
 
 def _has_integer_minus_zero(text: bytes) -> bool:
     """Look for a field `-0`, which JSON reads as an integer, without its sign."""
+    if b"-" not in text:
+        return False
     characters = np.frombuffer(text, dtype=np.uint8)
     minus = np.flatnonzero(characters[:-2] == _MINUS)
     zero = minus[characters[minus + 1] == _ZERO]

@@ -84,7 +84,7 @@ def numbers_of(block: bytes, choice: Choice) -> FloatArray | None:
     mark = choice.heading.separator.encode()
     if b'"' in block:
         block, mark = _unquoted(block, mark), b"\t"
-    first = block.partition(b"\n")[0]
+    first = block[: block.find(b"\n") % (len(block) + 1)]  # the whole block if it is one row
     if first.count(mark) == width and first.rstrip(b"\r").endswith(mark):
         block = _without_last_field(block, mark)
     elif first.count(mark) != width - 1:

@@ -115,7 +115,7 @@ def recording_from(
     RawFileError : a frequency that is not above zero
     """
     used = [taken for taken in choice.used if taken.name in rows.values]
-    columns = {t.name: t.factor * rows.values[t.name] + t.offset for t in used}
+    columns = {t.name: _in_si(t, rows.values[t.name]) for t in used}
     _insist_on_frequencies(file, columns, choice)
     left = [*choice.heading.labels]
     for taken in used:
@@ -133,6 +133,13 @@ def recording_from(
             *_row_flags(rows),
         ),
     )
+
+
+def _in_si(taken: Taken, values: FloatArray) -> FloatArray:
+    made = values * taken.factor
+    if taken.offset:
+        made += taken.offset
+    return made
 
 
 def _row_flags(rows: Rows) -> tuple[Flag, ...]:
@@ -211,8 +218,15 @@ def _insist_on_points(columns: Sequence[Sequence[str]], choice: Choice) -> None:
             raise Ambiguous(cell)
 
 
-def _columns_of(rows: Sequence[str], separator: str) -> list[tuple[str, ...]] | None:
+def _columns_of(rows: Sequence[str], separator: str) -> list[Sequence[str]] | None:
     """Turn rows of one length into columns, or return None where anything is odd."""
+    text = "\n".join(rows)
+    if '"' not in text:
+        width = rows[0].count(separator) + 1
+        if any(row.count(separator) != width - 1 for row in rows):
+            return None
+        cells = text.replace("\n", separator).split(separator)
+        return [cells[column::width] for column in range(width)]
     try:
         split = list(csv.reader(rows, delimiter=separator, skipinitialspace=True, strict=True))
         return list(zip(*split, strict=True)) if len(split) == len(rows) else None
@@ -221,7 +235,7 @@ def _columns_of(rows: Sequence[str], separator: str) -> list[tuple[str, ...]] | 
 
 
 def _quick(
-    columns: Sequence[tuple[str, ...]], choice: Choice
+    columns: Sequence[Sequence[str]], choice: Choice
 ) -> tuple[dict[str, FloatArray], dict[str, str]] | None:
     """Read the columns that are used, if all cells of the needed ones are plain numbers."""
     blocks = {t.name: "\n".join(columns[t.column]).encode() for t in choice.used}

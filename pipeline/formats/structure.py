@@ -11,6 +11,7 @@ import csv
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 from deamat.core.register_columns import split_unit
 from deamat.core.unit_spellings import unit_as_written
@@ -22,6 +23,11 @@ SEPARATORS = ("\t", ";", ",", "|")
 _HEADER_LINES = 1000  # no results block above a table is longer
 _ROWS = 32  # of numbers in a row are the table, and no further heading is looked for
 _TEXT = re.compile(r"[^0-9+\-.,;\t|\" eE]")  # what no row of plain numbers holds
+# two fields that begin as numbers do
+_NUMBERS = {
+    mark: re.compile(rf'(?:^|{re.escape(mark)})[ "+-]*[0-9].*?{re.escape(mark)}[ "+-]*[0-9]')
+    for mark in SEPARATORS
+}
 _BRACKETED = re.compile(r"\((.*)\)|\[(.*)\]|<(.*)>")
 _ENDING = re.compile(r"(.*\S)\s*(?:\(([^()]*)\)|\[([^\[\]]*)\]|<([^<>]*)>)")
 _SLASH = re.compile(r"(.*\S)(?:\s+(?:/|in\b|,)\s*|,\s+)(\S+(?: s)?)")
@@ -75,11 +81,12 @@ def headings(lines: Sequence[str]) -> Iterator[Heading]:
     for separator in SEPARATORS:
         if separator not in head:
             continue
+        begins = _NUMBERS[separator].search
         rows = alike = marks = 0
         for at, line in enumerate(lines[:_HEADER_LINES]):
-            rows = 0 if _TEXT.search(line) else rows + 1
             last, marks = marks, line.count(separator)
-            alike = alike + 1 if marks == last > 0 and _holds_numbers(line, separator) else 0
+            alike = alike + 1 if marks == last > 0 and begins(line) else 0
+            rows = 0 if alike > _ROWS or _TEXT.search(line) else rows + 1
             if rows > _ROWS:
                 break
             if rows or alike > _ROWS or not marks:
@@ -89,11 +96,6 @@ def headings(lines: Sequence[str]) -> Iterator[Heading]:
                 continue
             numbers = len([name for name in names if looks_numeric(name)])
             yield from _headings_at(lines, at, separator, names, numbers)
-
-
-def _holds_numbers(line: str, separator: str) -> bool:
-    """Say whether two fields of a line at least begin as numbers do."""
-    return len([field for field in line.split(separator) if field.strip(' "+-')[:1].isdigit()]) >= 2
 
 
 def _headings_at(
@@ -153,7 +155,10 @@ def _unit_row(
     return tuple("" if unit in _WITHOUT else unit for unit in units)
 
 
+@lru_cache(maxsize=1024)
 def _is_unit(text: str) -> bool:
+    if text != "1" and looks_numeric(text):
+        return False
     try:
         known = unit_as_written(text) is not None or text.casefold() == "s"
         return known or bool(clock_unit(text))
