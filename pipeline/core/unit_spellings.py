@@ -132,6 +132,17 @@ def unit_as_written(text: str, si_unit: str = "") -> str | None:
     return choices[0]
 
 
+def _of_other_case(unit: str, si_unit: str) -> str | None:
+    """Return the unit of the wanted kind that differs from this one of another kind in case alone.
+
+    `S` over a time is no siemens.
+    """
+    if not si_unit or si_factor(unit)[0] == si_unit:
+        return None
+    fitting = [u for u in _FOLDED.get(unit.casefold(), ()) if si_factor(u)[0] == si_unit]
+    return fitting[0] if len(fitting) == 1 else None
+
+
 def _refuse(text: str, choices: tuple[str, ...]) -> None:
     raise UnknownUnit(
         f"the unit {text!r} may be {' or '.join(choices)}; write the one that is meant"

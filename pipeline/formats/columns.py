@@ -142,7 +142,8 @@ def _unit(layout: Layout, reader: Reader, column: int, written: str) -> str:
 
 def _conversion(layout: Layout, column: int, unit: str) -> tuple[str, float, float]:
     try:
-        return si_factor(unit_as_written(unit) or unit)
+        found = meaning(layout.labels[column])
+        return si_factor(unit_as_written(unit, STANDARD[found[1]][0] if found else "") or unit)
     except UnknownUnit as error:
         raise RawFileError(
             "",
