@@ -178,6 +178,8 @@ def _table(file: RawFile, technique: str) -> Table:
     """Find the row of labels that says most, or else the longest run of numbers."""
     workbook = is_workbook(file.data)
     written = _sheets(file) if workbook else texts(file)
+    if not written:
+        raise ConfigError(f"{file.path}: an empty workbook, or a text in no encoding that is known")
     best: tuple[int, Table] | None = None
     for text in written:
         encoding = _ENCODINGS.get(text.encoding, text.encoding)

@@ -213,3 +213,8 @@ def test_a_workbook_is_learned_too(tmp_path: Path) -> None:
     assert 'separator = "workbook"\ncolumns' in done.output
     assert "# force_N: 3 values from 0.5 to 1.5" in done.output
     assert load_exports(tmp_path / "config")[0].form.separator == "workbook"
+
+
+def test_a_text_in_no_encoding_is_refused() -> None:
+    with pytest.raises(ConfigError, match="in no encoding that is known"):
+        propose(RawFile("x", b"Kraft\x81\xff;Weg\n1;2\n\xff\xff\x81\n"), Answers())
