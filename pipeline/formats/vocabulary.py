@@ -83,11 +83,15 @@ _NOISE = frozenset((
 
 @dataclass(frozen=True, slots=True)
 class Words:
-    """One quantity of the vocabulary: SI unit, labels in order of preference, and its reach."""
+    """One quantity of the vocabulary: SI unit, labels in order of preference, its reach, sources.
+
+    `seen` says for each label in which language and where it was seen.
+    """
 
     unit: str
     labels: tuple[str, ...]
     general: bool
+    seen: tuple[str, ...]
 
 
 @cache
@@ -95,7 +99,12 @@ def vocabulary() -> Mapping[str, Words]:
     """Return every quantity by its SI name."""
     text = Path(__file__).with_name("vocabulary.toml").read_text(encoding="utf-8")
     return {
-        name: Words(entry["unit"], tuple(entry["labels"]), entry.get("general", False))
+        name: Words(
+            entry["unit"],
+            tuple(entry["labels"]),
+            entry.get("general", False),
+            tuple(entry["labels"].values()),
+        )
         for name, entry in tomllib.loads(text).items()
     }
 
