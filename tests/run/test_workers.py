@@ -49,9 +49,9 @@ def test_work_comes_back_in_order_from_here_and_from_workers() -> None:
 
 
 def _deadly(met: Path, number: int) -> int:
-    """Square a number, but end the process over 3, and over 5 the first time."""
-    if number == 3 or (number == 5 and not met.exists()):
-        if number == 5:
+    """Square a number, but end the process over 3, and over 13 the first time."""
+    if number == 3 or (number == 13 and not met.exists()):
+        if number == 13:
             met.touch()
         os.kill(os.getpid(), signal.SIGTERM)
     return number**2
@@ -62,6 +62,8 @@ def test_a_killed_worker_costs_what_it_was_killed_over_and_nothing_else(tmp_path
         deadly = partial(_deadly, tmp_path / "met")
         results = workers.map(deadly, range(8), lost=lambda n: -n, at_once=2)
         assert list(results) == [0, 1, 4, -3, 16, 25, 36, 49]
+        again = workers.map(deadly, range(10, 16), lost=lambda n: -n, at_once=2)
+        assert list(again) == [100, 121, 144, 169, 196, 225]
         assert list(workers.map(deadly, range(3), lost=lambda n: -n)) == [0, 1, 4]
 
 
