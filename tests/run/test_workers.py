@@ -46,6 +46,9 @@ def test_work_comes_back_in_order_from_here_and_from_workers() -> None:
     with Workers(2) as workers:
         assert list(workers.map(abs, [-3, 2, -1], abs, at_once=3)) == [3, 2, 1]
         assert list(workers.map(abs, range(-7, 0), abs, at_once=2)) == [7, 6, 5, 4, 3, 2, 1]
+        mine = {process.pid for process in multiprocessing.active_children()}
+    assert mine
+    assert not mine & {process.pid for process in multiprocessing.active_children()}
 
 
 def _deadly(met: Path, number: int) -> int:
