@@ -34,7 +34,7 @@ def main() -> None:
             print("  ".join(f"{k} {v}" for k, v in row(task, judged).items()), flush=True)
     write_results("situations", [row(*one) for one in cells.items()], ("numpy", "scipy"))
     if options.docs:
-        (ROOT / "docs" / "situations.md").write_text(page(cells, options.count), "utf-8")
+        (ROOT / "docs" / "situations.md").write_text(page(cells), "utf-8")
 
 
 if __name__ == "__main__":

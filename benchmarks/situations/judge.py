@@ -63,7 +63,9 @@ def judge(situation: Situation, severity: float, seed: int, runner: Runner) -> J
     found = [r for r in outcome.records if _meant(r, situation, made)]
     telling = [r for r in outcome.records if r.key == situation.key] if made.misstated else found
     alarm = any(_names_cause(record, situation.causes) for record in telling)
-    refused = bool(outcome.rejected) or any(key == situation.key for key, _ in outcome.refused)
+    refused = any(key == situation.key for key, _ in outcome.refused) or bool(
+        outcome.rejected or (outcome.refused and not outcome.records)  # specimens refused whole
+    )
     if outcome.failures or outcome.hang:
         verdict: Verdict = "crash"
     elif not found:

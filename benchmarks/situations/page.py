@@ -15,12 +15,12 @@ Cells = Mapping[tuple[str, float], Sequence[Judged]]
 _SHOWN: tuple[Verdict, ...] = ("right", "limit", "flagged", "refused", "missed", "SILENT")
 _ALLOWED_SILENT, _ALLOWED_MISSED = 1.0, 6.0  # % of a cell
 _CHANCE = (
-    "A 95 % interval misses in 5 % without any fault, and of 200 materials by chance in 2 to 8 %: "
-    "what the same laboratory misses without the fault stands beside."
+    "A 95 % interval misses in 5 % without any fault, and of 200 materials by chance in 2 to 8 % "
+    "(of 50 in 0 to 12 %): what the same laboratory misses without the fault stands beside."
 )
 _INTRODUCTION = """\
-Each situation is made by the twin (SYNTHETIC; `pipeline/twin/situations/`) {} times at each
-severity and run as `deamat all` does, one campaign alone; `deamat simulate --situation NAME
+Each situation is made by the twin (SYNTHETIC; `pipeline/twin/situations/`) at each severity as many
+times as n says, and run as `deamat all` does, one campaign alone; `deamat simulate --situation NAME
 --severity X --seed N --out DIR` writes one. Right: the interval holds the truth. Limit: a lower
 limit that holds. Flagged: off, with a flag that names the cause. Refused: no value, and a reason.
 Missed: outside the 95 % interval, without such a flag, by less than twice its half width. SILENT:
@@ -38,7 +38,7 @@ def row(task: tuple[str, float], judged: Sequence[Judged]) -> dict[str, str | fl
     off = math.fsum(j.off for j in judged) / count
     shown = "" if math.isnan(off) else f"{100.0 * off:+.1f}"
     return {
-        "situation": name, "severity": severity, "naive off %": shown, **shares,
+        "situation": name, "severity": severity, "n": count, "naive off %": shown, **shares,
         "crash": _percent(counted["crash"], count),
         "cause named %": _percent(sum(j.alarm for j in judged), count),
     }  # fmt: skip
@@ -48,10 +48,10 @@ def _percent(part: int, whole: int) -> float:
     return round(100.0 * part / whole, 2)
 
 
-def page(cells: Cells, count: int) -> str:
+def page(cells: Cells) -> str:
     """Write the page."""
     rows = [row(task, judged) for task, judged in cells.items()]
-    lines = ["# What laboratories have, and what is said of it", _INTRODUCTION.format(count), ""]
+    lines = ["# What laboratories have, and what is said of it", _INTRODUCTION, ""]
     lines += [*_worst(rows), *_false_alarms(cells)]
     for name in dict.fromkeys(task[0] for task in cells):
         lines += _of_situation(name, [r for r in rows if r["situation"] == name])
@@ -63,13 +63,13 @@ def _of_situation(name: str, rows: Sequence[dict[str, str | float]]) -> list[str
     verdicts = " | ".join(f"{verdict} %" for verdict in _SHOWN)
     lines = [f"## {name}", f"{situation.told} Property: `{situation.key}`."]
     lines += [f"**On the card:** {situation.answer}", ""]
-    lines += [f"| {situation.severity} | naive script off, % | {verdicts} | cause named % |"]
-    lines += ["|---" * (len(_SHOWN) + 3) + "|"]
+    lines += [f"| {situation.severity} | n | naive script off, % | {verdicts} | cause named % |"]
+    lines += ["|---" * (len(_SHOWN) + 4) + "|"]
     for one in rows:
         severity = float(one["severity"])
         label = "no fault" if severity == 0.0 else f"{severity:g}"
         numbers = " | ".join(str(one[v]) for v in (*_SHOWN, "cause named %"))
-        lines.append(f"| {label} | {one['naive off %']} | {numbers} |")
+        lines.append(f"| {label} | {one['n']} | {one['naive off %']} | {numbers} |")
     lines += [f"\n{severity:g}: {reason}" for severity, reason in situation.undetectable.items()]
     return [*lines, ""]
 
@@ -87,17 +87,16 @@ def _worst(rows: Sequence[dict[str, str | float]]) -> list[str]:
     lines = ["## The worst cells", said, ""]
     if beyond:
         lines += [
-            "| situation | severity | SILENT % | missed % | both without the fault % | why |",
-            "|---|---|---|---|---|---|",
+            "| situation | severity | n | SILENT % | missed % | both without the fault % | why |",
+            "|---|---|---|---|---|---|---|",
         ]
     for r in beyond:
         name, severity = str(r["situation"]), float(r["severity"])
         without = sound[name]
         chance = f"{float(without['SILENT']) + float(without['missed']):.3g}"
         why = SITUATIONS[name].undetectable.get(severity, "")
-        lines.append(
-            f"| {name} | {severity:g} | {r['SILENT']} | {r['missed']} | {chance} | {why} |"
-        )
+        told = (name, f"{severity:g}", r["n"], r["SILENT"], r["missed"], chance, why)
+        lines.append(f"| {' | '.join(map(str, told))} |")
     return [*lines, ""]
 
 

@@ -47,6 +47,6 @@ def test_the_page_lists_a_silent_cell_with_its_reason(monkeypatch: pytest.Monkey
     clean = judging.Judged("right", 0.0, False, frozenset({"toe"}))
     known = replace(SITUATIONS[NAME], undetectable={0.1: "nothing tells"})
     monkeypatch.setitem(SITUATIONS, NAME, known)
-    text = page({(NAME, 0.0): [clean], (NAME, 0.1): [silent]}, 1)
-    assert "| tension-untared | 0.1 | 100.0 | 0.0 | 0 | nothing tells |" in text
+    text = page({(NAME, 0.0): [clean], (NAME, 0.1): [silent]})
+    assert "| tension-untared | 0.1 | 1 | 100.0 | 0.0 | 0 | nothing tells |" in text
     assert "| tension | 1 | toe | warning | 100.0 |" in text
