@@ -211,5 +211,5 @@ FORMAT = Format(
     lambda _: False,
     _read,
     looks="groups of channels with `unit_string` and `wf_increment`",
-    seen="NI's description of TDMS; npTDMS",
+    seen="npTDMS, its reader and writer",
 )
