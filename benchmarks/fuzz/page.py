@@ -58,7 +58,7 @@ def silent_per_10000(entries: Iterable[Entry], kinds: Sequence[str]) -> dict[str
 def page(entries: Sequence[Entry]) -> str:
     """Write the page of the study."""
     parts = [_INTRODUCTION.format(len(entries)), _rates(entries), _verdicts(entries)]
-    return "\n".join([*parts, _mutations(entries), _READING])
+    return "\n".join([*parts, _named(entries), _mutations(entries), _READING])
 
 
 def _rates(entries: Sequence[Entry]) -> str:
@@ -88,6 +88,27 @@ def _verdicts(entries: Sequence[Entry]) -> str:
 
 
 _SHOWN: tuple[Verdict, ...] = ("right", "rejected", "refused", "flagged", "gone", "SILENT")
+
+
+def _named(entries: Sequence[Entry]) -> str:
+    """Name every damaged file that is silent, to be seen again with `--replay`."""
+    damaged = [e for e in entries if e.kind in DAMAGED]
+    silent = [e for e in damaged if "SILENT" in (e.alone, e.group)]
+    bad = [e for e in entries if {"crash", "hang"} & {e.alone, e.group}]
+    together = len([e for e in damaged if e.group == "SILENT"])
+    counts = f"Of {len(damaged)} damaged files {len(silent)} are silent, {together} among siblings"
+    lines = [
+        f"{counts}; of all files {len(bad)} crash or hang.",
+        "",
+        "| good | mutation | seed | alone | group | what became of it |",
+        "|---|---|---|---|---|---|",
+    ]
+    for e in (*silent, *bad):
+        why = e.why.replace("|", "/")
+        lines.append(
+            f"| {e.good} | {e.mutation} | {e.seed} | {e.alone or ''} | {e.group or ''} | {why} |"
+        )
+    return "\n".join(["## Damaged and silent, each by name", "", *lines, ""])
 
 
 def _mutations(entries: Sequence[Entry]) -> str:
