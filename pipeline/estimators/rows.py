@@ -14,6 +14,7 @@ _RUN = 5  # neighbouring rows that are hashed together
 _KEPT = 192  # smallest hashes of a recording: shared fractions of 5 % still show
 _ODD = np.uint64(0x9E3779B97F4A7C15)
 _SHIFT = np.uint64(29)
+_WRITTEN = 0.1  # of a converter's step: what writing its multiples rounds them by
 _SET_STEPS = 4  # different ones: none, up, down, and the last one
 _ROUNDED = 4.2  # quanta: rounding alone moves a third difference by at most four
 
@@ -98,7 +99,7 @@ def has_noise(column: FloatArray) -> bool:
     """
     if column.size < 2 * _RUN:
         return False
-    quantum = _quantum(column)
+    quantum = max(_quantum(column), _converter_step(column))
     if quantum and np.unique(np.rint(np.diff(column) / quantum)).size <= _SET_STEPS:
         return False  # a voltage that is set in steps
     bends = np.abs(np.diff(column, n=3))
@@ -125,6 +126,18 @@ def _quantum(column: FloatArray) -> float:
         if np.abs(units - np.rint(units)).max() < 1e-6 * 10.0 ** max(digits - 6, 0):
             return quantum
     return 0.0
+
+
+def _converter_step(column: FloatArray) -> float:
+    """Find the step of the converter of which all values are multiples, zero if there is none."""
+    values = np.unique(column)
+    if values.size < 2:
+        return 0.0
+    step = float(np.diff(values).min())
+    span = float(values[-1] - values[0])
+    step = span / round(span / step)
+    off = (values - values[0]) / step
+    return step if np.abs(off - np.rint(off)).max() < _WRITTEN else 0.0
 
 
 def _different(values: NDArray[np.uint64]) -> NDArray[np.uint64]:

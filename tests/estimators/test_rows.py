@@ -66,5 +66,7 @@ def test_noise_is_more_than_the_last_digit() -> None:
     assert not has_noise(1e-3 * smooth)
     assert not has_noise(np.repeat(np.arange(20.0), 10))
     assert not has_noise(np.zeros(200))
+    count = 0.0741541  # of a load cell that is too coarse to show its noise
+    assert not has_noise(np.round(count * np.rint(15.0 * smooth / count), 5))
     assert not has_noise(np.append(np.repeat(500.0 * np.arange(1, 19), 2), [0.0, 0.0]))
     assert has_noise(np.round(smooth + np.random.default_rng(1).normal(0.0, 3e-4, 200), 4))

@@ -195,9 +195,11 @@ class _Search:
             ended, at = self._jumped(jump, loss) if near else self._lost(loss)
             if ended is not None:
                 return self._first_of(ended)
-        reached = float(self.greatest[-1]) >= limit_V
+        borne = np.flatnonzero(self.v >= limit_V)
         return self._first_of(
-            self._ended("amplifier limit", n - 1) if reached else self._ended("file ended", n - 1)
+            self._ended("amplifier limit", int(borne[-1]))
+            if borne.size
+            else self._ended("file ended", n - 1)
         )
 
     def _jumped(self, jump: int, loss: int) -> tuple[Breakdown | None, int]:

@@ -7,9 +7,11 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from deamat.core.arrays import FloatArray
 from deamat.core.records import Flag
+from deamat.estimators.curves.noise import noise_sd
 from deamat.estimators.least_squares.fit import Fit
 from deamat.estimators.least_squares.lack_of_fit import outlying_points, residual_runs
 from deamat.estimators.least_squares.monotone import NonDecreasingFit
@@ -28,6 +30,7 @@ _FALSE_ALARMS = 0.002
 _HELD, _HELD_OF_FEW = 20.0, 10.0
 _HELD_A_LITTLE = 4.0  # enough to name the shape where the residuals follow each other anyway
 _CHECKED_TIMES = 12
+_FAR = 6.0  # standard deviations of the noise of neighbouring readings
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,9 +97,18 @@ def misfit_of(law: TimeLaw, fit: Fit, held: float, readings: Readings) -> Misfit
     return Misfit(direct, greatest, tuple(flags))
 
 
-def outlying_flags(fit: Fit, readings: Readings) -> tuple[Flag, ...]:
-    """Name readings far off a law, which stay in its fit."""
-    off = outlying_points(fit)
+def outlying_flags(law: TimeLaw, fit: Fit, readings: Readings) -> tuple[Flag, ...]:
+    """Name readings far off a law, which stay in its fit.
+
+    Far from the majority, or by more than six standard deviations of what neighbouring readings
+    scatter and outside the law's interval: where a law misses several readings at its end, its
+    majority lies off it too.
+
+    Parameters
+    ----------
+    readings : in the order of `fit`
+    """
+    off = np.union1d(outlying_points(fit), _left_behind(law, fit, readings))
     if not off.size:
         return ()
     one = off.size == 1
@@ -108,6 +120,22 @@ def outlying_flags(fit: Fit, readings: Readings) -> tuple[Flag, ...]:
             f"the fit: {'line' if one else 'lines'} {lines_text(np.sort(readings.line[off]))}",
         ),
     )
+
+
+def _left_behind(law: TimeLaw, fit: Fit, readings: Readings) -> NDArray[np.intp]:
+    order = np.argsort(readings.time_s, kind="stable")
+    noise = noise_sd(fit.weighted_residuals[order])
+    far = np.flatnonzero(np.abs(fit.weighted_residuals) > _FAR * noise)
+    if noise == 0.0:
+        return far[:0]
+    outside = []
+    for at in far.tolist():
+        value, slopes = law.at(float(readings.time_s[at]))
+        found = law.estimate(value, slopes)
+        u = math.hypot(found.scatter, found.calibration, found.thermal)
+        miss = abs(float(readings.viscosity_Pas[at]) - value)
+        outside.append(miss > coverage_factor(found.dof) * u)
+    return far[np.array(outside, dtype=np.bool_)]
 
 
 def widened_by_misfit(law: TimeLaw, missed: Misfit) -> TimeLaw:

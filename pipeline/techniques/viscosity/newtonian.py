@@ -96,7 +96,7 @@ def fit_newtonian(windows: Sequence[Windowed], config: ViscosityConfig) -> Fitte
     if missed is not None:
         return Fitted(widened_by_misfit(law, missed), ((1.0, law),), missed.direct)
     if len(windows) == 1:  # of several runs each has said so already, with the lines of its file
-        law = replace(law, flags=(*law.flags, *outlying_flags(choice.fit, readings)))
+        law = replace(law, flags=(*law.flags, *outlying_flags(law, choice.fit, readings)))
     handicaps = [0.0 if f.kind == POLYNOMIAL else _ANOTHER_FAMILY for _, f in choice.scored]
     weights = akaike_weights([f for _, f in choice.scored], handicaps)
     possible = supported_of(weights, choice.scored)

@@ -140,6 +140,14 @@ def test_a_step_that_was_just_reached_counts_and_one_on_the_way_does_not() -> No
         assert value.diagnostics["voltage_V"] == expected
 
 
+def test_steps_that_end_at_the_amplifiers_limit_were_borne() -> None:
+    (value,) = reduce(film(thickness_m=MICROMETER), steps_file(), amplifier_limit_V=6000.0).values
+    assert value.diagnostics["voltage_V"] == 6000.0
+    assert value.diagnostics["end"] == "amplifier limit"
+    assert value.method.startswith("voltage of the last step of a DC test in steps of 500 V")
+    assert "right-censored" in [flag.name for flag in value.flags]
+
+
 def test_a_ramp_sampled_too_slowly_says_so() -> None:
     columns = {k: v[3::8] for k, v in ramp_file().columns.items()}
     columns["voltage_V"][-1] = 0.0

@@ -88,6 +88,16 @@ def test_a_last_reading_far_off_is_named_and_stays_in() -> None:
     assert low <= 2.24 <= high
 
 
+def test_of_a_few_readings_that_the_law_leaves_at_its_end_each_is_named() -> None:
+    times = np.arange(1.0, 12.1) * HOUR
+    hours = times / HOUR
+    falls = 1.64 * (1.0 + 0.06 * hours) * (1.0 - 0.1 * np.clip(hours - 10.2, 0.0, None))
+    measured = reduce(newtonian(falls, times, speed_rpm=30.0, seed=2))
+    assert "of 12 readings" in flags(measured)["outlying-readings"]
+    steady = newtonian(1.64 * (1.0 + 0.06 * hours), times, speed_rpm=30.0, seed=2)
+    assert "outlying-readings" not in flags(reduce(steady))
+
+
 def test_where_no_law_follows_the_readings_nearby_answer() -> None:
     hours = TIMES / HOUR
     gels = 1.5 * (1.0 + 0.01 * hours) * (1.0 + 4.5 * np.clip((hours - 8.0) / 4.0, 0.0, None) ** 2)
