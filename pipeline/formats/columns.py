@@ -14,6 +14,7 @@ from deamat.formats.cells import Dialect
 from deamat.formats.documentation import contradictions
 from deamat.formats.header import Layout
 from deamat.formats.quantities import STANDARD, assign, meaning
+from deamat.formats.strain_columns import unknown_strain
 from deamat.formats.vocabulary import ASKED, meaning_among
 
 
@@ -100,6 +101,7 @@ def _columns(layout: Layout, reader: Reader, header_units: tuple[tuple[str, str]
     )
     conversions = tuple((factor, offset) for _, factor, offset in found)
     flags = contradictions(stated, over, "header") + _kind_flags(labels, si_units)
+    flags += unknown_strain(names, names)
     notes = tuple(layout.labels[column] for column in left)
     return Columns(names, conversions, written, documented, flags, kept, notes)
 

@@ -11,7 +11,7 @@ import re
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import cache, partial
+from functools import cache, lru_cache, partial
 
 from deamat.core.errors import ConfigError, RawFileError
 from deamat.core.recording import Recording
@@ -63,9 +63,13 @@ def is_binary(file: RawFile) -> bool:
 
 def _by_its_name(file: RawFile) -> tuple[str, str] | None:
     """Return what a file of a machine's own form is, and what to export instead."""
-    name = file.path.casefold()
-    ending = name[name.rfind(".") :]
-    return next(((what, hint) for end, what, hint in _NAMED if end.fullmatch(ending)), None)
+    return _of_ending(file.path[file.path.rfind(".") :])
+
+
+@lru_cache(maxsize=64)  # the files of a campaign have the same endings
+def _of_ending(ending: str) -> tuple[str, str] | None:
+    plain_ending = ending.casefold()
+    return next(((what, hint) for end, what, hint in _NAMED if end.fullmatch(plain_ending)), None)
 
 
 def detect(file: RawFile, exports: Sequence[Export] = ()) -> Format:

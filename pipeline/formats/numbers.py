@@ -146,21 +146,22 @@ def _parse(block: bytes, columns: int, dialect: Dialect) -> FloatArray | None:
     delimiter, decimal = dialect.delimiter.encode(), dialect.decimal.encode()
     line_end = b"\r\n" if b"\r" in block else b"\n"
     marks = block.translate(None, _DIGITS) + line_end  # decimal marks and separators
-    row_of_fractions = delimiter.join([decimal] * columns) + line_end
-    rows = len(marks) // len(row_of_fractions)
-    fractions = marks == row_of_fractions * rows  # one decimal mark in every field
-    if not fractions:
-        one_row = delimiter * (columns - 1) + line_end
+    first = marks[: marks.index(b"\n") + 1]
+    one_row = delimiter * (columns - 1) + line_end
+    rows = len(marks) // len(first)
+    if marks != first * rows or first.translate(None, decimal) != one_row:  # rows unlike the first
         separators = marks.translate(None, decimal)
         rows = len(separators) // len(one_row)
         if separators != one_row * rows:
             return None
+        first = b""
     text = _json_list(block, line_end, delimiter, decimal)
     values = None if text is None else _json_numbers(text)
     if text is None or values is None or values.size != rows * columns:
         return None  # one empty field leaves no number and no separator
     if not _within_range(values):
         return None
+    fractions = len(first) == len(one_row) + columns  # one decimal mark in every field
     if not fractions and not values.all() and _has_integer_minus_zero(text):
         return None
     return values.reshape(rows, columns)

@@ -16,7 +16,6 @@ from deamat.formats.columns import Columns, Reader, columns_of
 from deamat.formats.header import Layout, notes
 from deamat.formats.numbers import read_block, read_some, row_lines
 from deamat.formats.rawfile import Head, RawFile
-from deamat.formats.strain_columns import unknown_strain
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,7 +135,7 @@ def _read_rows(file: RawFile, heading: _Heading, reader: Reader) -> Recording:
         reader=reader.name,
     )
     lead = columns[_lead(told.names)]
-    flags = told.flags + unknown_strain(told.names, told.names)
+    flags = told.flags
     if not (lead[1:] > lead[:-1]).all():  # nearly every recording rises, so it repeats no row
         flags += row_flags(rows, told.names, lines)
     named = dict(zip(told.names, columns, strict=True))
