@@ -24,6 +24,7 @@ _ROTOR, _SPEED_rpm = 3, 30.0
 _NOISE, _ZERO = 0.003, 0.0025  # of full scale
 _START_Pas, _RISE_Pas_per_h = 1.64, 0.18
 _BATCH_SD = 0.006
+_SIBLINGS = 5
 _RATES_per_s = np.geomspace(0.1, 100.0, 13)
 _CONSISTENCY = 20.0
 _RHEOMETER_NOISE, _RHEOMETER_GAIN = 0.005, 0.01
@@ -36,13 +37,18 @@ def _timed(runs: int, remarks: tuple[str, ...], rng: Generator, factor: float) -
     zero = rng.normal(0.0, _ZERO)
     for i in range(1, runs + 1):
         slip = factor if factor and i == 1 else 1.0
-        level = 1.0 + rng.normal(0.0, _BATCH_SD)
+        level = _level(rng, runs)
         seen = _torque(rng, level * (_START_Pas + _RISE_Pas_per_h * _HOURS), zero)
         files[f"{i}.csv"] = _csv(slip * _HOUR_s * _HOURS, _SPEED_rpm, seen, remarks)
         rows.append(_row(i, f"{i}.csv"))
     truth = _HOUR_s * (1.0 + (_START_Pas + _RISE_Pas_per_h) / _RISE_Pas_per_h)
     naive = ((factor or 1.0) + runs - 1.0) / runs * truth
     return Made({**files, "specimens.csv": register_csv(rows)}, truth, naive)
+
+
+def _level(rng: Generator, runs: int) -> float:
+    """Draw a batch over the mean of many; of one alone that one is asked for."""
+    return 1.0 + rng.normal(0.0, _BATCH_SD) if runs > 1 else 1.0
 
 
 def _torque(rng: Generator, viscosity_Pas: FloatArray, zero: float) -> FloatArray:
@@ -92,7 +98,7 @@ def _rotor(runs: int, rng: Generator, rotor: float) -> Made:
     own, zero = full_scale_Pas(_ROTOR, _SPEED_rpm), rng.normal(0.0, _ZERO)
     shown = own
     for i in range(1, runs + 1):
-        level = 1.0 + rng.normal(0.0, _BATCH_SD)
+        level = _level(rng, runs)
         seen = _torque(rng, level * (_START_Pas + _RISE_Pas_per_h * _HOURS), zero)
         set_to = int(rotor) if rotor and i == 1 else _ROTOR
         full = full_scale_Pas(set_to, _SPEED_rpm)
@@ -160,9 +166,9 @@ SITUATIONS = (
     ),
     _of_units(
         "viscosity-time-unit-siblings",
-        "One of three runs of a liquid has its time in another unit.",
+        "One of five runs of a liquid has its time in another unit.",
         "Flagged: the others rise as far in sixty times as long.",
-        ("time-unit",), _TIMES, (1.0 / 60.0, 60.0), partial(_timed, 3, ()), _DOUBLING,
+        ("time-unit",), _TIMES, (1.0 / 60.0, 60.0), partial(_timed, _SIBLINGS, ()), _DOUBLING,
     ),
     _of_units(
         "viscosity-time-unit-header",
@@ -187,9 +193,10 @@ SITUATIONS = (
     ),
     _of_units(
         "viscosity-rotor-siblings",
-        "For one of three runs the viscometer was set to another rotor than the one that turned.",
+        "For one of five runs the viscometer was set to another rotor than the one that turned.",
         "Flagged: that run stands apart from the others.",
-        ("outlier",), "rotor set in place of 3", (2.0, 4.0), partial(_rotor, 3), "viscosity",
+        ("outlier",), "rotor set in place of 3", (2.0, 4.0), partial(_rotor, _SIBLINGS),
+        "viscosity",
     ),
     _of_units(
         "flow-rate-unit",
