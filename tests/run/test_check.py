@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
 from deamat.commands.check import check
 from deamat.core.sheets import write_workbook
 from deamat.formats.blocks import block_in
+from deamat.formats.detect import detect
 from deamat.formats.rawfile import RawFile
 from deamat.run.check import Asked, Checked, check_files
+from deamat.run.check.curves import curve_of
 from deamat.run.check.found import Axis, Curve
 from deamat.run.check.nearest import nearest_form
 from deamat.run.check.preview import preview
@@ -307,3 +311,18 @@ def test_a_curve_leaves_out_what_has_no_place_on_its_axes(folder: Path) -> None:
     curve = look(path, "viscosity").readings[0].curve
     assert curve is not None
     assert (curve.x, curve.y) == ((1.0, 100.0), (2.0, 1.0))
+    recording = detect(file := RawFile(str(path), path.read_bytes(), technique="viscosity")).read(
+        file
+    )
+    rates = recording.columns["shear_rate_per_s"].copy()
+    rates[3] = np.nan  # as a reader may leave a reading that is none
+    gap = replace(recording, columns={**recording.columns, "shear_rate_per_s": rates})
+    drawn = curve_of("viscosity", gap)
+    assert drawn is not None
+    assert (drawn.x, drawn.y) == ((1.0,), (2.0,))
+
+
+def test_channels_of_a_form_that_names_its_columns_are_refused(folder: Path) -> None:
+    checked = look(put(folder, "r.csv", RAMP), "breakdown", probe_ratio="1000")
+    assert not checked.read
+    assert "a file of the form hv_ramp says itself what its columns are" in checked.faults[-1]
