@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from deamat.estimators.dielectric.low_frequency import conducted, polarisation
+from deamat.estimators.dielectric.low_frequency import conducted, polarisation, steepening
 
 F = np.logspace(1, 4, 31)
 FILM = 1e-10 * (1 - 0.004 * np.log10(F / 10))
@@ -57,3 +57,36 @@ def test_most_of_a_loss_by_conduction_falls_as_one_over_f() -> None:
     assert conducted(F, 0.05 + 0.003 * (10 / F), 10.0) == 0.0
     assert conducted(F, 0.05 * (10 / F) ** 0.3, 10.0) == 0.0
     assert conducted(F[::10], 0.05 * (10 / F[::10]), 10.0) == 0.0
+
+
+DECADES = np.array([10.0, 100.0, 1000.0])
+RISING = np.array([4.0, 1.0, 0.6])  # by 3 over the first decade, by 2/3 over the next
+
+
+@pytest.mark.parametrize(
+    ("capacitance", "loss_with_it", "rises"),
+    [
+        (RISING, 1.0, (3.0, 2.0 / 3.0)),
+        (RISING, 0.0, (0.0, 0.0)),  # C'' does not rise
+        (np.array([1.21, 1.1, 1.0]), 1.0, (0.0, 0.0)),  # by as much in either decade
+    ],
+)
+def test_a_steepening_is_the_rise_over_two_decades(
+    capacitance: np.ndarray, loss_with_it: float, rises: tuple[float, float]
+) -> None:
+    lost = loss_with_it * (capacitance - capacitance[-1]) + 0.01
+    found = steepening(DECADES, capacitance, lost / capacitance, 10.0)
+    assert found == pytest.approx(rises)
+
+
+@pytest.mark.parametrize(("share", "counts"), [(1.1, True), (0.9, False)])
+def test_a_loss_that_rises_by_less_than_its_share_is_no_polarisation(
+    share: float, counts: bool
+) -> None:
+    lost = np.array([share * 0.1 * (RISING[0] - RISING[1]), 0.0, 0.0])
+    assert any(steepening(DECADES, RISING, lost / RISING, 10.0)) == counts
+
+
+@pytest.mark.parametrize("at_Hz", [3.0, 30.0])
+def test_a_sweep_that_does_not_reach_over_both_decades_shows_no_steepening(at_Hz: float) -> None:
+    assert steepening(DECADES, RISING, RISING, at_Hz) == (0.0, 0.0)

@@ -47,3 +47,6 @@ def test_later_sweeps_are_read_between_the_points_of_the_first() -> None:
     sweep = np.array([0, 1, 0, 1, 0, 1])
     values = np.log10(f) - 0.03 * sweep
     assert drift_between(f, values, sweep) == pytest.approx([0.03, 0.03])
+    f, sweep = np.array([10.0, 10.0, 20.0, 100.0, 100.0, 200.0]), np.array([0, 1, 1, 0, 1, 1])
+    values = np.log10(f) - 0.03 * sweep  # the ends of the first are within its range
+    assert drift_between(f, values, sweep) == pytest.approx([0.03, 0.03, 0.03])
