@@ -17,7 +17,8 @@ _LEAST_READINGS = 3
 def parted(rate_per_s: FloatArray) -> list[NDArray[np.intp]]:
     """Part readings into sweeps: up, down, and from the start again.
 
-    Rates in no order, each turning after a reading or two, are one sweep.
+    Rates in no order, each turning after a reading or two, are one sweep. Where every rate of one
+    way was read equally often, its first readings are a sweep, its second ones another, and so on.
 
     Parameters
     ----------
@@ -33,6 +34,10 @@ def parted(rate_per_s: FloatArray) -> list[NDArray[np.intp]]:
         if abs(logs[i] - logs[moves[-1]]) > _TURNS:
             moves.append(i)
     steps = np.sign(np.diff(logs[moves]))
+    times = np.unique(np.diff([*moves, len(logs)]))
+    one_way = len(moves) >= _LEAST_READINGS and abs(float(steps.sum())) == steps.size
+    if one_way and times.size == 1 and times[0] > 1:
+        return [np.arange(first, len(logs), times[0]) for first in range(int(times[0]))]
     starts, way = [0], 0.0
     for k, step in enumerate(steps.tolist()):
         if way and step != way:

@@ -295,7 +295,8 @@ def test_sweeps_at_their_own_temperatures_are_answered_apart() -> None:
         (np.tile(SWEPT[::-1], 3), [7] * 3),
         (np.concatenate([SWEPT, SWEPT[-2::-1]]), [7, 6]),
         (np.concatenate([SWEPT, SWEPT[::-1], SWEPT]), [8, 7, 6]),
-        (np.repeat(SWEPT, 3), [21]),
+        (np.repeat(SWEPT, 3), [7, 7, 7]),
+        (np.repeat(SWEPT, 3)[:-1], [20]),
         (np.array([1.0, 5, 2, 8, 3, 9, 4]), [7]),
         (np.concatenate([SWEPT, [1.0, 2, 3, 4]]), [7, 4]),
     ],
@@ -304,3 +305,22 @@ def test_rates_that_turn_or_start_again_begin_a_sweep(
     rates: np.ndarray, lengths: list[int]
 ) -> None:
     assert [len(sweep) for sweep in parted(rates)] == lengths
+
+
+def _in_turn(*levels: float) -> dict[str, np.ndarray]:
+    swept = _sweeps(*levels)
+    order = np.arange(7 * len(levels)).reshape(len(levels), 7).T.ravel()
+    return {name: values[order] for name, values in swept.items()}
+
+
+def test_readings_in_turn_at_every_rate_are_held_against_each_other() -> None:
+    measured = viscosity.TECHNIQUE.reduce(specimen(), recording(_in_turn(3.5, 2.8, 2.1)), CONTEXT)
+    assert measured.values == ()
+    assert "3 sweeps over the same shear rates" in measured.refusals[0].reason
+    same = viscosity.TECHNIQUE.reduce(specimen(), recording(_in_turn(3.5, 3.5, 3.5)), CONTEXT)
+    assert not {flag.name for v in same.values for flag in v.flags}
+    at_three = _in_turn(3.5, 2.8, 2.1) | {"temperature_K": np.tile([295.15, 305.15, 315.15], 7)}
+    found = viscosity.TECHNIQUE.reduce(specimen(), recording(at_three), CONTEXT).values
+    assert [v.quantity.value for v in found if v.key == "viscosity"] == pytest.approx(
+        [3.5, 2.8, 2.1], rel=0.01
+    )
