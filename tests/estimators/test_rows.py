@@ -69,4 +69,5 @@ def test_noise_is_more_than_the_last_digit() -> None:
     count = 0.0741541  # of a load cell that is too coarse to show its noise
     assert not has_noise(np.round(count * np.rint(15.0 * smooth / count), 5))
     assert not has_noise(np.append(np.repeat(500.0 * np.arange(1, 19), 2), [0.0, 0.0]))
+    assert not has_noise(0.0137 * np.rint(0.05 * np.arange(200.0) ** 2))  # of a converter
     assert has_noise(np.round(smooth + np.random.default_rng(1).normal(0.0, 3e-4, 200), 4))

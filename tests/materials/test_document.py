@@ -6,7 +6,9 @@ import math
 
 import pytest
 
-from deamat.materials.document import canonical_json
+from deamat.core.errors import CardError
+from deamat.materials.document import canonical_json, canonical_record
+from tests.materials.samples import modulus
 
 
 def test_what_is_hashed_is_sorted_text_on_one_line_in_its_own_letters() -> None:
@@ -17,3 +19,5 @@ def test_what_json_cannot_say_is_never_written() -> None:
     for number in (math.nan, math.inf):
         with pytest.raises(ValueError, match="not JSON compliant"):
             canonical_json({"value": number})
+        with pytest.raises(CardError, match="is no interval"):
+            canonical_record(modulus(ci95=(number, math.inf)))
