@@ -30,7 +30,9 @@ _FALSE_ALARMS = 0.002
 _HELD, _HELD_OF_FEW = 20.0, 10.0
 _HELD_A_LITTLE = 4.0  # enough to name the shape where the residuals follow each other anyway
 _CHECKED_TIMES = 12
-_FAR = 6.0  # standard deviations of the noise of neighbouring readings
+# Standard deviations of the noise of neighbouring readings, of many and of few: the noise of twelve
+# is known to a third, and one in a thousand residuals then lies beyond eight of it.
+_FAR, _FAR_OF_FEW = 6.0, 60.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,9 +102,9 @@ def misfit_of(law: TimeLaw, fit: Fit, held: float, readings: Readings) -> Misfit
 def outlying_flags(law: TimeLaw, fit: Fit, readings: Readings) -> tuple[Flag, ...]:
     """Name readings far off a law, which stay in its fit.
 
-    Far from the majority, or by more than six standard deviations of what neighbouring readings
-    scatter and outside the law's interval: where a law misses several readings at its end, its
-    majority lies off it too.
+    Far from the majority; or outside the law's interval and by more than six standard deviations
+    (of twelve readings eleven) of what neighbouring readings scatter: where a law misses several
+    readings at its end, its majority lies off it too.
 
     Parameters
     ----------
@@ -125,7 +127,7 @@ def outlying_flags(law: TimeLaw, fit: Fit, readings: Readings) -> tuple[Flag, ..
 def _left_behind(law: TimeLaw, fit: Fit, readings: Readings) -> NDArray[np.intp]:
     order = np.argsort(readings.time_s, kind="stable")
     noise = noise_sd(fit.weighted_residuals[order])
-    far = np.flatnonzero(np.abs(fit.weighted_residuals) > _FAR * noise)
+    far = np.flatnonzero(np.abs(fit.weighted_residuals) > (_FAR + _FAR_OF_FEW / order.size) * noise)
     if noise == 0.0:
         return far[:0]
     outside = []
