@@ -311,15 +311,17 @@ def test_a_curve_leaves_out_what_has_no_place_on_its_axes(folder: Path) -> None:
     curve = look(path, "viscosity").readings[0].curve
     assert curve is not None
     assert (curve.x, curve.y) == ((1.0, 100.0), (2.0, 1.0))
-    recording = detect(file := RawFile(str(path), path.read_bytes(), technique="viscosity")).read(
-        file
-    )
-    rates = recording.columns["shear_rate_per_s"].copy()
-    rates[3] = np.nan  # as a reader may leave a reading that is none
-    gap = replace(recording, columns={**recording.columns, "shear_rate_per_s": rates})
-    drawn = curve_of("viscosity", gap)
-    assert drawn is not None
-    assert (drawn.x, drawn.y) == ((1.0,), (2.0,))
+
+
+def test_a_reading_that_is_none_is_not_drawn(folder: Path) -> None:
+    file = RawFile("r.csv", RAMP.encode(), technique="breakdown")
+    recording = detect(file).read(file)
+    volts = recording.columns["voltage_V"].copy()
+    volts[3] = np.nan
+    gap = replace(recording, columns={**recording.columns, "voltage_V": volts})
+    curve = curve_of("breakdown", gap)
+    assert curve is not None
+    assert curve.x == (0.0, 1.0, 2.0, *map(float, range(4, 12)))
 
 
 def test_channels_of_a_form_that_names_its_columns_are_refused(folder: Path) -> None:
