@@ -20,8 +20,10 @@ NOT_ON_CARDS = {
     "breakdown_field": "of one specimen; the card of a material holds the Weibull distribution",
     "mass_density": "no technique measures it",
     "viscosity_against_temperature": "the liquids of the twin are measured at one temperature",
-    "tensile_modulus_toe_compensated": "only of strips that hang loose, and none of the twin does",
+    "tensile_modulus_toe_compensated": "only of strips that hang loose; none of the twin does, and "
+    "of the few that are taken to the truth is that of the plain modulus",
 }
+_SISTERS = {"tensile_modulus_toe_compensated": "tensile_modulus"}
 
 _LAST_S, _EVERY_S = 24.0 * SECONDS_PER_HOUR, 1.0
 _OF_LIQUIDS = frozenset(
@@ -64,7 +66,7 @@ def truth_of(record: PropertyRecord, table: Mapping[Place, float]) -> float:
     bed = record.conditions.get("temperature_K")
     age = None if bed else record.conditions.get("age", REFERENCE_AGE)
     try:
-        return table[record.key, record.material, age, bed]
+        return table[_SISTERS.get(record.key, record.key), record.material, age, bed]
     except KeyError:
         raise MissingProperty(
             f"the twin tells no truth of {record.key} of {record.material} "
