@@ -17,8 +17,9 @@ from deamat.core.errors import RawFileError
 ARCHIVE = b"PK\x03\x04"
 AGAIN = "open it in the spreadsheet program, save it, and register the saved file"
 LARGEST = 1 << 29  # bytes of an archive unpacked
-# What a damaged archive raises: NotImplementedError for a compression method that a flipped byte
-# names, RuntimeError for a part that it marks as encrypted, ParseError and KeyError for its parts.
+# What zipfile and the XML parser raise on a damaged archive: NotImplementedError for a compression
+# method that a flipped byte names, RuntimeError for a part that it marks as encrypted, ParseError
+# and KeyError for its parts.
 DAMAGED = (
     zipfile.BadZipFile, zlib.error, struct.error, NotImplementedError, RuntimeError, OSError,
     EOFError, ValueError, ParseError, KeyError,

@@ -50,7 +50,9 @@ from deamat.formats.vocabulary import ASKED
 
 MAGIC = b"TDSm"
 _AGAIN = "close the file in LabVIEW and copy it again, or export it as text"
-# what npTDMS raises on damaged files (6000 were spoilt), and what other bytes may lead it into
+# What npTDMS raises on damaged files (6000 were spoilt), and what other bytes may lead it into. It
+# checks no types: a flipped byte makes a property or a scale of another kind, which is used only
+# when a channel is read.
 _DAMAGED = (
     ValueError, KeyError, IndexError, TypeError, AttributeError, struct.error, NotImplementedError,
     ArithmeticError, MemoryError, EOFError, OSError,

@@ -11,6 +11,8 @@ from typing import Any
 
 from deamat.run.state import DamagedState, State
 
+# Results are kept as pickles, in this program's own cache alone: it carries checksums, is keyed on
+# the code that wrote it and may be deleted at any time (ADR 4). Nothing published is a pickle.
 STALE = "to be redone"
 
 
